@@ -1,0 +1,24 @@
+//! What a body is made of: components of one entity, plain data with its invariants, and no systems.
+//!
+//! A body is **one entity**. [`Particles`], [`Springs`], [`Muscles`], [`SpineFriction`], [`Gravity`] and [`Ground`] are its components,
+//! and each holds flat arrays indexed by particle or by spring, so that a whole body fits the first cache and a step
+//! reads memory in order. A body has only the components that its scene needs: without [`Gravity`] there is no gravity.
+//!
+//! Every component is built by a constructor that refuses what cannot be and says which element was wrong
+//! ([`BodyError`]). Single elements are read and written as plain structs ([`Particle`], [`Spring`], [`Muscle`]).
+//!
+//! Lengths, masses and times are pure numbers in whatever units a scene chooses; nothing here assumes SI.
+
+mod environment;
+mod error;
+mod friction;
+mod muscles;
+mod particles;
+mod springs;
+
+pub use environment::{Gravity, Ground};
+pub use error::{BodyError, Requirement, check};
+pub use friction::SpineFriction;
+pub use muscles::{LEAST_REST_FRACTION, Muscle, Muscles, Wave};
+pub use particles::{Particle, ParticleId, Particles};
+pub use springs::{Spring, SpringId, Springs};

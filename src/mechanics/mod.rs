@@ -1,0 +1,2 @@
+//! Mechanics.
+pub mod integrators;

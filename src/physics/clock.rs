@@ -1,0 +1,130 @@
+//! The clock of a scene: a whole number of steps of one dt.
+
+use bevy::{ecs::prelude::*, prelude::ReflectResource, reflect::Reflect};
+
+use crate::body::{BodyError, Requirement, check};
+
+/// How many steps a tick takes.
+#[derive(Clone, Copy, Debug, PartialEq, Reflect)]
+pub enum Pace {
+    /// As many whole steps as fit the tick's real time × this scale; what is left over is carried to the next tick.
+    TimeScale(f64),
+    /// Exactly this many, whatever the tick's real time: for command lines and tests.
+    Steps(u64),
+}
+
+/// The clock of the scene.
+///
+/// dt belongs to the scene and not to the frame: the time scale only sets how many whole steps a tick takes. Time is
+/// t = t_base + (n − n_base)·dt with a whole number n, so it does not drift, and the base moves when dt changes, so that a
+/// moved slider makes no jump.
+#[derive(Clone, Debug, PartialEq, Reflect, Resource)]
+#[reflect(Resource)]
+pub struct Clock {
+    dt: f64,
+    pace: Pace,
+    step: u64,
+    base_step: u64,
+    base_time: f64,
+    carry: f64,
+}
+
+impl Clock {
+    /// The largest time scale: beyond it a slow machine would never catch up.
+    pub const LARGEST_TIME_SCALE: f64 = 1000.0;
+
+    /// A clock at time 0 with a step of `dt` that shows `time_scale` units of simulated time a second.
+    ///
+    /// # Errors
+    /// If dt is not above zero, or the time scale is negative or not finite.
+    pub fn new(dt: f64, time_scale: f64) -> Result<Self, BodyError> {
+        let mut clock = Self { dt: 1.0, pace: Pace::TimeScale(1.0), step: 0, base_step: 0, base_time: 0.0, carry: 0.0 };
+        clock.set_dt(dt)?;
+        clock.set_time_scale(time_scale)?;
+        Ok(clock)
+    }
+
+    /// The step dt, in units of simulated time.
+    pub fn dt(&self) -> f64 {
+        self.dt
+    }
+
+    /// Changes dt from now on; time goes on from where it is.
+    ///
+    /// # Errors
+    /// If dt is not above zero; nothing is changed then.
+    pub fn set_dt(&mut self, dt: f64) -> Result<(), BodyError> {
+        check(dt, Requirement::Positive, || "clock.dt".into())?;
+        self.base_time = self.time();
+        self.base_step = self.step;
+        self.dt = dt;
+        Ok(())
+    }
+
+    /// The simulated time that passes in a second, or nothing where the pace is a number of steps.
+    pub fn time_scale(&self) -> Option<f64> {
+        match self.pace {
+            Pace::TimeScale(scale) => Some(scale),
+            Pace::Steps(_) => None,
+        }
+    }
+
+    /// Changes the time scale: 0 stands still, 1 is a unit of time a second.
+    ///
+    /// # Errors
+    /// If it is negative, above [`LARGEST_TIME_SCALE`](Self::LARGEST_TIME_SCALE) or not finite; nothing is changed then.
+    pub fn set_time_scale(&mut self, scale: f64) -> Result<(), BodyError> {
+        check(scale, Requirement::NonNegative, || "clock.time_scale".into())?;
+        if scale > Self::LARGEST_TIME_SCALE {
+            return Err(BodyError::Inconsistent {
+                path: "clock.time_scale".into(),
+                problem: format!("{scale} is not allowed; give at most {}", Self::LARGEST_TIME_SCALE),
+            });
+        }
+        self.pace = Pace::TimeScale(scale);
+        Ok(())
+    }
+
+    /// Changes how many steps a tick takes.
+    pub fn set_steps_per_tick(&mut self, steps: u64) {
+        self.pace = Pace::Steps(steps);
+    }
+
+    /// How many steps have been taken since the start.
+    pub fn step(&self) -> u64 {
+        self.step
+    }
+
+    /// The simulated time now.
+    pub fn time(&self) -> f64 {
+        self.time_at(self.step)
+    }
+
+    /// The simulated time at a step since dt was last changed.
+    pub fn time_at(&self, step: u64) -> f64 {
+        self.base_time + (step - self.base_step) as f64 * self.dt
+    }
+
+    /// Back to time 0, with the same dt and pace.
+    pub fn rewind(&mut self) {
+        (self.step, self.base_step, self.base_time, self.carry) = (0, 0, 0.0, 0.0);
+    }
+
+    /// Takes the whole steps of a tick that lasts `seconds` of real time, and says how many they are.
+    pub(super) fn take_steps(&mut self, seconds: f64) -> u64 {
+        match self.pace {
+            Pace::Steps(steps) => steps,
+            Pace::TimeScale(scale) => {
+                self.carry += seconds * scale / self.dt;
+                let whole = self.carry.floor();
+                self.carry -= whole;
+                whole as u64
+            }
+        }
+    }
+
+    /// Moves on by `steps`, once the bodies have taken them.
+    pub(super) fn advance(&mut self, steps: u64) {
+        self.step += steps;
+    }
+}
