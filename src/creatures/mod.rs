@@ -11,3 +11,19 @@ pub enum Look {
     #[default]
     Plain,
 }
+pub mod library {
+    //! Where files are (stub).
+    use std::collections::BTreeMap;
+
+    /// A kind of file.
+    #[derive(Clone, Copy, Debug)]
+    pub struct FileKind;
+
+    /// Scene files.
+    pub const SCENE: FileKind = FileKind;
+
+    /// The files of a kind that have a name.
+    pub fn list(_: FileKind) -> BTreeMap<String, ()> {
+        ["garden", "document"].map(|name| (name.into(), ())).into()
+    }
+}

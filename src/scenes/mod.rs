@@ -82,3 +82,18 @@ pub struct SceneProblem {
     /// What is wrong, for people.
     pub text: String,
 }
+
+pub mod parameters;
+
+/// Why a file is not written (stub).
+#[derive(Clone, Debug, thiserror::Error)]
+#[error("{0}")]
+pub struct FileError(String);
+
+/// Saves the scene that is open (stub).
+///
+/// # Errors
+/// Always.
+pub fn save(_: &mut World, path: &std::path::Path) -> Result<(), FileError> {
+    Err(FileError(format!("{}: no scene is open", path.display())))
+}
