@@ -13,6 +13,9 @@ use super::{
     model::{FrictionRow, SpineRow},
 };
 
+/// A mass that the push back brings to rest within this fraction of a step is at rest.
+const AT_ONCE: f64 = 1e-9;
+
 /// Directions in which friction acts on one mass.
 struct Frame<R, const D: usize> {
     /// Forward along the spine, S.
@@ -95,7 +98,9 @@ impl<R: Real, const D: usize> Model<R, D> {
             if friction.ratchet {
                 let push = dot(*a, frame.spine);
                 let back = push.if_below(zero, push, zero);
-                let held = zero.if_below(dot(v, frame.spine), zero, back);
+                // What the push would stop at once is at rest: a speed of rounding errors must not decide.
+                let soon = dot(v, frame.spine) + push * R::splat(self.dt * AT_ONCE);
+                let held = soon.if_below(zero, back, zero);
                 subtract(a, frame.spine, held * frame.touches);
             }
         }
