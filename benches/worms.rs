@@ -8,7 +8,7 @@ use std::{hint::black_box, time::Duration};
 use bevy::prelude::*;
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use wriggle::{
-    creatures::{Creature, Pose},
+    creatures::{Creature, GardenWorm, Pose},
     mechanics::integrators::Method,
     physics::{Clock, Cost, PhysicsPlugin},
 };
@@ -22,10 +22,11 @@ fn worms(count: usize, method: Method) -> App {
     app.world_mut().resource_mut::<Clock>().set_steps_per_tick(STEPS_A_TICK);
     for i in 0..count {
         let pose = Pose { at: bevy::math::DVec3::Z * i as f64, heading: 0.0 };
-        match Creature::garden_worm(0.9 + 0.2 * i as f64 / count as f64).body(pose) {
+        let worm = GardenWorm { damping: 0.9 + 0.2 * i as f64 / count as f64, ..GardenWorm::default() };
+        match Creature::from(worm).body(pose) {
             Ok(body) => {
-                let mut worm = app.world_mut().spawn(method);
-                bevy::ecs::system::EntityCommand::apply(body, worm.reborrow());
+                let worm = app.world_mut().spawn(method);
+                bevy::ecs::system::EntityCommand::apply(body, worm);
             }
             Err(error) => panic!("{error}"),
         }

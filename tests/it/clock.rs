@@ -90,7 +90,7 @@ fn restart_goes_back_to_the_start_and_runs_the_same_again() {
     let mut app = ticking_app(0.005, 3.2);
     let body = app.world_mut().spawn(Worm::GARDEN.body()).id();
     let start = bits(particles(&app, body));
-    let mut run = |app: &mut App| {
+    let run = |app: &mut App| {
         while app.world().resource::<Clock>().step() < 1000 {
             app.update();
         }
