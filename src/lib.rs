@@ -2,6 +2,7 @@
 #![warn(missing_docs)]
 
 pub mod body;
+pub mod cli;
 pub mod creatures;
 pub mod mechanics;
 #[cfg(feature = "window")]

@@ -1,1 +1,5 @@
-fn main() {}
+//! The program `wriggle`: see `wriggle --help`.
+
+fn main() -> std::process::ExitCode {
+    wriggle::cli::main()
+}

@@ -19,6 +19,7 @@ mod springs;
 pub use environment::{Gravity, Ground};
 pub use error::{BodyError, Requirement, check};
 pub use friction::SpineFriction;
+pub(crate) use muscles::Epoch;
 pub use muscles::{LEAST_REST_FRACTION, Muscle, Muscles, Wave};
 pub use particles::{Particle, ParticleId, Particles};
 pub use springs::{Spring, SpringId, Springs};

@@ -1,29 +1,33 @@
-//! Creatures.
-use bevy::{ecs::prelude::*, prelude::ReflectComponent, reflect::Reflect};
+//! Creatures as data: a blueprint, read from a file, becomes the components of a body. Needs no Bevy schedule.
+//!
+//! A [`Creature`] is a kind with parameters ([`GardenWorm`]) or raw lists of particles and springs ([`RawBody`]). [`Creature::body`]
+//! places it in the world and gives a [`Body`], which is put on an entity as a command:
+//!
+//! ```
+//! use bevy::{ecs::system::EntityCommand, prelude::*};
+//! use wriggle::creatures::{Creature, GardenWorm, Pose};
+//!
+//! let mut world = World::new();
+//! let body = Creature::from(GardenWorm::default()).body(Pose::default())?;
+//! body.apply(world.spawn(Name::new("worm")));
+//! # Ok::<(), wriggle::body::BodyError>(())
+//! ```
 
-/// How a body wants to be drawn.
-#[derive(Clone, Component, Copy, Debug, Default, PartialEq, Eq, Reflect)]
-#[reflect(Component)]
-pub enum Look {
-    /// Three ellipsoids with rings and a face.
-    GardenWorm,
-    /// Balls and rods.
-    #[default]
-    Plain,
-}
-pub mod library {
-    //! Where files are (stub).
-    use std::collections::BTreeMap;
+mod blueprint;
+mod build;
+mod error;
+mod garden_worm;
+pub mod library;
+mod look;
+pub(crate) mod numbers;
+mod parse;
 
-    /// A kind of file.
-    #[derive(Clone, Copy, Debug)]
-    pub struct FileKind;
+pub use blueprint::{Creature, Friction, Plan, RawBody, RawMuscle, RawParticle, RawSpring};
+pub use build::{Body, Pose};
+pub use error::FileError;
+pub use garden_worm::GardenWorm;
+pub use look::Look;
+pub(crate) use parse::{CurrentVersion, options, parse, version};
 
-    /// Scene files.
-    pub const SCENE: FileKind = FileKind;
-
-    /// The files of a kind that have a name.
-    pub fn list(_: FileKind) -> BTreeMap<String, ()> {
-        ["garden", "document"].map(|name| (name.into(), ())).into()
-    }
-}
+/// The most particles that the creatures of a scene may have together. Files that ask for more are refused before memory is taken.
+pub const MOST_PARTICLES: usize = 4_000_000;

@@ -1,12 +1,25 @@
-//! Mechanics.
+//! Pure functions on a body's data: forces, friction, contact, energy, stability, and the methods of integration.
+//!
+//! A step does not work on components. [`Model`] and [`State`] hold one body, or several of equal topology side by side in the lanes of a
+//! [`Real`], in the layout that the arithmetic wants; the methods in [`integrators`] are written once for
+//! all of them. Every operation on a lane is the operation on an `f64`, so a body's bits do not depend on what is stepped
+//! beside it.
+
+mod advance;
+mod contact;
+mod energy;
+mod forces;
+mod friction;
 pub mod integrators;
+mod model;
+mod real;
+mod stability;
+mod wave;
 
-use crate::body::{Muscles, SpringId, Springs};
-
-/// The rest length of a spring at a time (stub: sines without ramp).
-pub fn rest_length(springs: &Springs, muscles: Option<&Muscles>, spring: SpringId, time: f64) -> f64 {
-    let rest = springs.get(spring).map_or(0.0, |spring| spring.rest_length);
-    let muscle = muscles.and_then(|muscles| muscles.iter().find(|muscle| muscle.spring == spring));
-    muscle
-        .map_or(rest, |m| rest * (1.0 + m.amplitude * libm::sin(core::f64::consts::TAU * (time / m.period - m.phase))))
-}
+pub use advance::{Advance, Timeline};
+pub use energy::{angular_momentum, elastic_energy, kinetic_energy, momentum};
+pub use forces::rest_length;
+pub use model::{BodyParts, Model, State};
+pub use real::{Lanes, Real};
+pub use stability::{Damping, Rates, StabilityBound, is_stretched, stability_bound};
+pub use wave::sin_cycles;

@@ -2,7 +2,10 @@
 
 use bevy::{ecs::prelude::*, prelude::ReflectResource, reflect::Reflect};
 
-use crate::body::{BodyError, Requirement, check};
+use crate::{
+    body::{BodyError, Requirement, check},
+    mechanics::Timeline,
+};
 
 /// How many steps a tick takes.
 #[derive(Clone, Copy, Debug, PartialEq, Reflect)]
@@ -21,12 +24,18 @@ pub enum Pace {
 #[derive(Clone, Debug, PartialEq, Reflect, Resource)]
 #[reflect(Resource)]
 pub struct Clock {
-    dt: f64,
+    timeline: Timeline,
     pace: Pace,
     step: u64,
-    base_step: u64,
-    base_time: f64,
     carry: f64,
+}
+
+/// The garden worm's document steps by half a millisecond.
+impl Default for Clock {
+    fn default() -> Self {
+        let timeline = Timeline { dt: 0.0005, base_step: 0, base_time: 0.0 };
+        Self { timeline, pace: Pace::TimeScale(1.0), step: 0, carry: 0.0 }
+    }
 }
 
 impl Clock {
@@ -38,7 +47,7 @@ impl Clock {
     /// # Errors
     /// If dt is not above zero, or the time scale is negative or not finite.
     pub fn new(dt: f64, time_scale: f64) -> Result<Self, BodyError> {
-        let mut clock = Self { dt: 1.0, pace: Pace::TimeScale(1.0), step: 0, base_step: 0, base_time: 0.0, carry: 0.0 };
+        let mut clock = Self::default();
         clock.set_dt(dt)?;
         clock.set_time_scale(time_scale)?;
         Ok(clock)
@@ -46,7 +55,7 @@ impl Clock {
 
     /// The step dt, in units of simulated time.
     pub fn dt(&self) -> f64 {
-        self.dt
+        self.timeline.dt
     }
 
     /// Changes dt from now on; time goes on from where it is.
@@ -55,9 +64,7 @@ impl Clock {
     /// If dt is not above zero; nothing is changed then.
     pub fn set_dt(&mut self, dt: f64) -> Result<(), BodyError> {
         check(dt, Requirement::Positive, || "clock.dt".into())?;
-        self.base_time = self.time();
-        self.base_step = self.step;
-        self.dt = dt;
+        self.timeline = Timeline { dt, base_step: self.step, base_time: self.time() };
         Ok(())
     }
 
@@ -97,17 +104,18 @@ impl Clock {
 
     /// The simulated time now.
     pub fn time(&self) -> f64 {
-        self.time_at(self.step)
+        self.timeline.time_at(self.step)
     }
 
-    /// The simulated time at a step since dt was last changed.
-    pub fn time_at(&self, step: u64) -> f64 {
-        self.base_time + (step - self.base_step) as f64 * self.dt
+    /// The time of every step since dt was last changed.
+    pub fn timeline(&self) -> Timeline {
+        self.timeline
     }
 
     /// Back to time 0, with the same dt and pace.
     pub fn rewind(&mut self) {
-        (self.step, self.base_step, self.base_time, self.carry) = (0, 0, 0.0, 0.0);
+        self.timeline = Timeline { base_step: 0, base_time: 0.0, ..self.timeline };
+        (self.step, self.carry) = (0, 0.0);
     }
 
     /// Takes the whole steps of a tick that lasts `seconds` of real time, and says how many they are.
@@ -115,7 +123,7 @@ impl Clock {
         match self.pace {
             Pace::Steps(steps) => steps,
             Pace::TimeScale(scale) => {
-                self.carry += seconds * scale / self.dt;
+                self.carry += seconds * scale / self.timeline.dt;
                 let whole = self.carry.floor();
                 self.carry -= whole;
                 whole as u64

@@ -1,97 +1,118 @@
-//! The plugin.
+//! The plugin: the clock, and the systems of a tick.
+//!
+//! Start with [`PhysicsPlugin`]. It runs in `FixedUpdate`, or in any schedule that it is given:
+//!
+//! ```text
+//! the schedule   Actuate   plans: what changed since the last tick; steering belongs here
+//!                Step      every step of the tick, for all bodies in parallel: rest lengths -> forces -> velocity -> spine friction ->
+//!                          position -> contact, as the body's method orders it
+//!                Watch     freezes what exploded
+//! every frame    Sync      Shown, FollowParticle: what is drawn, between the last two ticks
+//! ```
+//!
+//! A body is one entity with [`Particles`], [`Springs`](crate::body::Springs), a [`Method`], and whichever of
+//! [`Muscles`](crate::body::Muscles), [`SpineFriction`](crate::body::SpineFriction), [`Gravity`](crate::body::Gravity) and [`Ground`](crate::body::Ground) it
+//! needs. Physics adds the rest. Pausing is Bevy's `Time<Virtual>::pause`; a paused app takes exactly one tick after
+//! `Time<Fixed>::accumulate_overstep(timestep)`.
+
 mod clock;
+mod plan;
+mod restart;
+mod step;
 mod sync;
+mod watch;
 
-use bevy::prelude::*;
+use bevy::{
+    app::{FixedUpdate, RunFixedMainLoop, RunFixedMainLoopSystems},
+    ecs::schedule::{InternedScheduleLabel, ScheduleLabel},
+    prelude::*,
+};
 
-use crate::body::{ParticleId, Particles};
+use crate::{body::Particles, mechanics::integrators::Method};
 
 pub use clock::{Clock, Pace};
+pub use plan::Plan;
+pub use restart::{Restart, StartState};
+pub use step::Cost;
 pub use sync::{FollowParticle, Previous, Shown, ShownLap};
+pub use watch::{BodyFrozen, Frozen, Verdict};
 
-/// The sets in which the physics runs, in order.
+/// The sets in which physics runs, in this order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, SystemSet)]
 pub enum PhysicsSystems {
-    /// Steering and muscle ramps.
+    /// Before the steps of a tick: plans, and whatever steers bodies.
     Actuate,
-    /// All steps of a tick.
+    /// All steps of the tick.
     Step,
-    /// Freezes what exploded.
+    /// Freezes bodies that exploded.
     Watch,
-    /// Writes what a frame shows.
+    /// Once a frame, after all ticks: writes what the frame shows. Nothing in it is read by the sets above.
     Sync,
 }
 
-/// The physics (stub: shows bodies, does not step them).
-#[derive(Default)]
-pub struct PhysicsPlugin;
+/// Steps bodies. Works without a renderer, assets or a window; it needs Bevy's `TimePlugin` and task pools, as in `MinimalPlugins`.
+///
+/// ```
+/// use bevy::prelude::*;
+/// use wriggle::physics::{Clock, PhysicsPlugin};
+///
+/// let mut app = App::new();
+/// app.add_plugins((MinimalPlugins, PhysicsPlugin::default()));
+/// app.update();
+/// assert_eq!(app.world().resource::<Clock>().dt(), 0.0005);
+/// ```
+pub struct PhysicsPlugin {
+    schedule: InternedScheduleLabel,
+}
+
+impl Default for PhysicsPlugin {
+    fn default() -> Self {
+        Self::new(FixedUpdate)
+    }
+}
+
+impl PhysicsPlugin {
+    /// Runs the physics in `schedule`: a tick each time it runs.
+    pub fn new(schedule: impl ScheduleLabel) -> Self {
+        Self { schedule: schedule.intern() }
+    }
+}
 
 impl Plugin for PhysicsPlugin {
     fn build(&self, app: &mut App) {
-        app.add_message::<BodyFrozen>().add_message::<Restart>().init_resource::<Cost>();
-        app.register_required_components::<Particles, Previous>().register_required_components::<Particles, Shown>();
-        app.add_systems(FixedUpdate, sync::remember);
-        app.add_systems(
-            RunFixedMainLoop,
-            (sync::show, sync::follow)
-                .chain()
-                .in_set(PhysicsSystems::Sync)
-                .in_set(RunFixedMainLoopSystems::AfterFixedMainLoop),
+        app.init_resource::<Clock>().init_resource::<Cost>().add_message::<BodyFrozen>().add_message::<Restart>();
+        app.register_required_components::<Particles, Method>()
+            .register_required_components::<Particles, Plan>()
+            .register_required_components::<Particles, Verdict>()
+            .register_required_components::<Particles, Previous>()
+            .register_required_components::<Particles, Shown>()
+            .add_observer(restart::remember_start);
+
+        app.configure_sets(
+            self.schedule,
+            (PhysicsSystems::Actuate, PhysicsSystems::Step, PhysicsSystems::Watch).chain(),
         );
+        app.add_systems(
+            self.schedule,
+            (
+                plan::plan.in_set(PhysicsSystems::Actuate),
+                (sync::remember, step::step).chain().in_set(PhysicsSystems::Step),
+                (watch::watch, plan::watch_limit).chain().in_set(PhysicsSystems::Watch),
+            ),
+        );
+        // Also while paused, when no tick runs.
+        app.add_systems(PreUpdate, restart::restart);
+
+        let ticks_are_fixed = self.schedule == FixedUpdate.intern();
+        let fraction = move |fixed: Option<Res<Time<Fixed>>>| match fixed {
+            Some(time) if ticks_are_fixed => time.overstep_fraction_f64(),
+            _ => 1.0,
+        };
+        let sync = (fraction.pipe(sync::show), sync::follow).chain().in_set(PhysicsSystems::Sync);
+        if ticks_are_fixed {
+            app.add_systems(RunFixedMainLoop, sync.in_set(RunFixedMainLoopSystems::AfterFixedMainLoop));
+        } else {
+            app.add_systems(PostUpdate, sync);
+        }
     }
-}
-
-/// Put on a body by the watch: it is not stepped any more.
-#[derive(Clone, Component, Debug, Reflect)]
-#[reflect(Component)]
-pub struct Frozen {
-    /// The step after which it was frozen.
-    pub step: u64,
-    /// The time then.
-    pub time: f64,
-    /// The particle that went wrong.
-    pub particle: ParticleId,
-    /// Why.
-    pub reason: String,
-}
-
-/// A body was frozen.
-#[derive(Clone, Debug, Message)]
-pub struct BodyFrozen {
-    /// Its entity.
-    pub body: Entity,
-    /// What happened, for people.
-    pub text: String,
-}
-
-/// Asks for every body to be put back to where it was spawned.
-#[derive(Clone, Copy, Debug, Default, Message)]
-pub struct Restart;
-
-/// The state that a body was spawned with.
-#[derive(Clone, Component, Debug)]
-pub struct StartState(pub Particles);
-
-/// What physics keeps about a body.
-#[derive(Clone, Component, Debug)]
-pub struct Plan {
-    stability_limit: f64,
-}
-
-impl Plan {
-    /// The largest stable dt of the body's method.
-    pub fn stability_limit(&self) -> f64 {
-        self.stability_limit
-    }
-}
-
-/// What the physics cost so far.
-#[derive(Clone, Copy, Debug, Default, Resource)]
-pub struct Cost {
-    /// Forces on a whole body, counted.
-    pub force_evaluations: u64,
-    /// Forces on one spring, counted.
-    pub spring_updates: u64,
-    /// Seconds that the last tick took.
-    pub seconds: f64,
 }

@@ -5,7 +5,6 @@ use bevy::{
     math::{DVec3, Vec3},
     prelude::ReflectComponent,
     reflect::Reflect,
-    time::{Fixed, Time},
     transform::components::Transform,
 };
 
@@ -70,12 +69,8 @@ pub(super) fn remember(mut bodies: Query<(&Particles, &mut Previous)>) {
     }
 }
 
-/// Writes [`Shown`] from the last two ticks.
-pub(super) fn show(
-    fixed: Option<Res<Time<Fixed>>>,
-    mut bodies: Query<(&Particles, &Previous, Option<&ShownLap>, &mut Shown)>,
-) {
-    let fraction = fixed.map_or(1.0, |time| time.overstep_fraction_f64());
+/// Writes [`Shown`] between the last two ticks, at this fraction of the way.
+pub(super) fn show(In(fraction): In<f64>, mut bodies: Query<(&Particles, &Previous, Option<&ShownLap>, &mut Shown)>) {
     for (particles, previous, lap, mut shown) in &mut bodies {
         let offset = lap.map_or(0.0, |lap| {
             lap.offset(particles.position_columns()[0].iter().copied().fold(f64::INFINITY, f64::min))

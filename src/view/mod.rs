@@ -1,6 +1,75 @@
-//! View.
-use bevy::prelude::*;
+//! The view: skins, the garden, light, camera and pictures. It reads bodies and writes none.
+//!
+//! [`ViewPlugin`] is added beside Bevy's `DefaultPlugins` and [`PhysicsPlugin`](crate::physics::PhysicsPlugin). It draws every body
+//! that has a [`Look`](crate::creatures::Look), where [`Shown`](crate::physics::Shown) says, and rebuilds the surroundings when
+//! [`CurrentScene`](crate::scenes::CurrentScene) changes. [`Shot`] draws pictures without a window.
 
-/// Whether the pointer is on the panel: what it does there is not meant for the camera.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Resource)]
-pub struct PointerOnPanel(pub bool);
+mod adapter;
+mod camera;
+mod clay;
+mod garden;
+mod light;
+mod offscreen;
+mod paint;
+mod plain;
+mod quality;
+mod skins;
+mod studio;
+mod worm;
+
+use bevy::{prelude::*, render::renderer::RenderAdapterInfo};
+
+pub use adapter::{AdapterSummary, NoAdapter, adapter, display_available};
+pub use camera::{FollowWorm, PointerOnPanel, SceneCamera};
+pub use offscreen::{Picture, Shot, ShotError};
+pub use quality::Quality;
+
+use crate::scenes::{CurrentScene, Props};
+
+/// Draws bodies and their surroundings. Add it after `DefaultPlugins`.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ViewPlugin {
+    /// How much the picture may cost; `None`, the default, picks by the graphics adapter.
+    pub quality: Option<Quality>,
+}
+
+impl Plugin for ViewPlugin {
+    fn build(&self, app: &mut App) {
+        app.add_plugins((paint::plugin, camera::plugin, skins::plugin))
+            .insert_resource(ClearColor(Color::srgb(0.72, 0.87, 0.95)))
+            .add_systems(Update, decorate.run_if(resource_exists_and_changed::<CurrentScene>));
+    }
+
+    /// The adapter is known only now.
+    fn finish(&self, app: &mut App) {
+        let (quality, why) = match self.quality {
+            Some(quality) => (quality, "as asked".to_owned()),
+            None => Quality::pick(app.world().get_resource::<RenderAdapterInfo>()),
+        };
+        info!("quality {quality:?}: {why}");
+        app.insert_resource(quality);
+    }
+}
+
+/// Everything that stands around in a scene.
+#[derive(Clone, Component, Copy, Debug, Default)]
+struct Decor;
+
+/// Clears away the surroundings of the last scene and sets up those of this one.
+fn decorate(
+    scene: Res<CurrentScene>,
+    quality: Res<Quality>,
+    old: Query<Entity, With<Decor>>,
+    mut commands: Commands,
+    mut meshes: ResMut<Assets<Mesh>>,
+    mut paints: ResMut<Assets<paint::Paint>>,
+) {
+    for entity in &old {
+        commands.entity(entity).try_despawn();
+    }
+    light::shine(*quality, &mut commands);
+    match scene.file.props {
+        Props::Garden { seed } => garden::plant(seed, *quality, &mut commands, &mut meshes, &mut paints),
+        Props::None => studio::set_up(*quality, &mut commands, &mut meshes, &mut paints),
+    }
+}

@@ -1,0 +1,102 @@
+//! `wriggle list`: what there is, and the parameters of a scene.
+
+use std::io::{self, Write};
+
+use clap::Args;
+
+use super::{CliError, Headless, Outcome};
+use crate::{
+    creatures::{
+        Plan,
+        library::{self, CREATURE, SCENE, Source},
+    },
+    mechanics::integrators::Method,
+    scenes::{self, parameters},
+};
+
+#[derive(Args, Debug)]
+pub(super) struct ListArguments {
+    /// Print every parameter of this scene or creature: path, value, usual range, unit
+    #[arg(long, value_name = "SCENE")]
+    paths: Option<String>,
+}
+
+pub(super) fn list(arguments: &ListArguments) -> Result<Outcome, CliError> {
+    let rows = match &arguments.paths {
+        Some(scene) => paths(scene)?,
+        None => names(),
+    };
+    let mut out = io::stdout().lock();
+    write_table(&mut out, &rows).and_then(|()| out.flush()).map_err(CliError::stdout)?;
+    Ok(Outcome::Done)
+}
+
+fn paths(scene: &str) -> Result<Vec<Vec<String>>, CliError> {
+    let mut run = Headless::new(scenes::load(scene)?, None)?;
+    let mut rows = vec![["path", "value", "range", "unit", "what it is"].map(String::from).to_vec()];
+    rows.extend(parameters::list(run.world_mut()).into_iter().map(|parameter| {
+        vec![
+            parameter.path,
+            parameter.value.to_string(),
+            format!("{} to {}", parameter.range.start(), parameter.range.end()),
+            parameter.unit.into(),
+            parameter.help.into(),
+        ]
+    }));
+    Ok(rows)
+}
+
+fn names() -> Vec<Vec<String>> {
+    let mut rows = vec![vec!["Scenes (wriggle play NAME):".into()]];
+    rows.extend(library::list(SCENE).into_iter().map(|(name, source)| {
+        let title = match scenes::read_scene(&source) {
+            Ok(file) => file.title,
+            Err(error) => error.to_string(),
+        };
+        row(name, title, &source)
+    }));
+    rows.push(vec!["Creatures (wriggle run NAME):".into()]);
+    rows.extend(library::list(CREATURE).into_iter().map(|(name, source)| {
+        let kind = match library::read_creature(&source) {
+            Ok(creature) => match creature.body {
+                Plan::Raw(raw) => format!("{} particles, {} springs", raw.particles.len(), raw.springs.len()),
+                Plan::GardenWorm(_) => "garden worm".into(),
+            },
+            Err(error) => error.to_string(),
+        };
+        row(name, kind, &source)
+    }));
+    rows.push(vec!["Methods (--method NAME):".into()]);
+    rows.extend(Method::ALL.map(|method| vec![format!("  {}", method.name()), title(method).into()]));
+    rows
+}
+
+fn title(method: Method) -> &'static str {
+    match method {
+        Method::SemiImplicitEuler => "velocity first, then position with the new velocity; the document's",
+        Method::RungeKutta4 => "classic, fourth order, with the friction rule in its stages",
+    }
+}
+
+fn row(name: String, title: String, source: &Source) -> Vec<String> {
+    vec![format!("  {name}"), title, source.to_string()]
+}
+
+/// Writes columns as wide as their widest cell; a row of one cell is a heading.
+fn write_table(out: &mut impl Write, rows: &[Vec<String>]) -> io::Result<()> {
+    let mut widths = Vec::new();
+    for row in rows.iter().filter(|row| row.len() > 1) {
+        widths.resize(widths.len().max(row.len()), 0);
+        for (width, cell) in widths.iter_mut().zip(row) {
+            *width = cell.chars().count().max(*width);
+        }
+    }
+    for row in rows {
+        let mut line = String::new();
+        for (cell, &width) in row.iter().zip(&widths) {
+            line.push_str(&format!("{cell:width$}  "));
+        }
+        writeln!(out, "{}", line.trim_end())?;
+    }
+    Ok(())
+}

@@ -1,0 +1,103 @@
+//! The command line, one file a command.
+
+use std::{io, process::ExitCode};
+
+use clap::{Parser, Subcommand};
+use thiserror::Error;
+
+use crate::{creatures::FileError, scenes::parameters::ParameterError};
+
+mod headless;
+mod list;
+mod play;
+mod report;
+mod run;
+#[cfg(feature = "window")]
+mod shot;
+mod values;
+
+pub use headless::{Headless, headless_garden};
+pub use report::state_hash;
+
+/// A simulator of small soft creatures made of masses and springs.
+#[derive(Debug, Parser)]
+#[command(name = "wriggle", version, args_conflicts_with_subcommands = true)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Option<Command>,
+    #[command(flatten)]
+    play: play::PlayArguments,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Open a scene in a window (what `wriggle` does by itself)
+    Play(play::PlayArguments),
+    /// List scenes, creatures and methods, or the parameters of a scene
+    List(list::ListArguments),
+    /// Draw a scene into a picture, without a window
+    #[cfg(feature = "window")]
+    Shot(shot::ShotArguments),
+    /// Run a scene or a creature without drawing it
+    Run(run::RunArguments),
+}
+
+/// How a command ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Outcome {
+    /// Done: exit code 0.
+    Done,
+    /// Done, but the watch froze a body: exit code 1.
+    Frozen,
+}
+
+/// Why a command did not run: exit code 2.
+#[derive(Debug, Error)]
+pub enum CliError {
+    /// A scene or creature file is missing or bad.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// A parameter cannot be set.
+    #[error("--set {0}")]
+    Parameter(#[from] ParameterError),
+    /// Flags contradict the scene or each other.
+    #[error("{0}")]
+    Usage(String),
+    /// Reading or writing failed.
+    #[error("could not write to {place}: {error}")]
+    Output {
+        /// Where to.
+        place: String,
+        /// What the system says.
+        error: io::Error,
+    },
+}
+
+impl CliError {
+    fn stdout(error: io::Error) -> Self {
+        Self::Output { place: "standard output".into(), error }
+    }
+}
+
+/// Parses the command line and runs its command.
+pub fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    let outcome = match arguments.command {
+        None => play::play(&arguments.play),
+        Some(Command::Play(arguments)) => play::play(&arguments),
+        Some(Command::List(arguments)) => list::list(&arguments),
+        #[cfg(feature = "window")]
+        Some(Command::Shot(arguments)) => shot::shot(&arguments),
+        Some(Command::Run(arguments)) => run::run(&arguments),
+    };
+    match outcome {
+        Ok(Outcome::Done) => ExitCode::SUCCESS,
+        Ok(Outcome::Frozen) => ExitCode::from(1),
+        // Whoever reads the output has seen enough: `wriggle run … | head`.
+        Err(CliError::Output { error, .. }) if error.kind() == io::ErrorKind::BrokenPipe => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::from(2)
+        }
+    }
+}

@@ -1,0 +1,128 @@
+//! What a run has to tell: the table of a recording, and the result.
+
+use core::fmt;
+use std::io::{self, Write};
+
+use bevy::math::DVec3;
+use serde::Serialize;
+
+use super::Headless;
+use crate::{body::Particles, mechanics::integrators::Method, physics::Frozen};
+
+/// FNV-1a 64 over the little-endian bits of all positions, then of all velocities, body by body.
+pub fn state_hash<'a>(bodies: impl Iterator<Item = &'a Particles> + Clone) -> u64 {
+    let positions = bodies.clone().flat_map(Particles::positions);
+    let velocities = bodies.flat_map(Particles::velocities);
+    let bytes = positions.chain(velocities).flat_map(|vector| vector.to_array()).flat_map(f64::to_le_bytes);
+    bytes.fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3))
+}
+
+/// Writes the names of the columns of a recording.
+pub(super) fn write_record_head(out: &mut dyn Write) -> io::Result<()> {
+    writeln!(out, "time,body,particle,x,y,z,vx,vy,vz")
+}
+
+/// Writes one line a particle, with as many digits as it takes to read back the same bits.
+pub(super) fn write_record(out: &mut dyn Write, run: &Headless) -> io::Result<()> {
+    let time = run.clock().time();
+    for (name, _, particles) in run.bodies() {
+        for (i, (p, v)) in particles.positions().zip(particles.velocities()).enumerate() {
+            writeln!(out, "{time},{name},{i},{},{},{},{},{},{}", p.x, p.y, p.z, v.x, v.y, v.z)?;
+        }
+    }
+    Ok(())
+}
+
+/// The result of a run, as `--json` prints it.
+#[derive(Debug, Serialize)]
+pub(super) struct Report {
+    scene: String,
+    method: &'static str,
+    dt: f64,
+    time: f64,
+    steps: u64,
+    wall_seconds: f64,
+    force_evaluations: u64,
+    spring_updates: u64,
+    hash: String,
+    threads: usize,
+    bodies: Vec<BodyReport>,
+}
+
+#[derive(Debug, Serialize)]
+struct BodyReport {
+    name: String,
+    particles: usize,
+    springs: usize,
+    start: [f64; 3],
+    center: [f64; 3],
+    distance: f64,
+    status: &'static str,
+}
+
+impl Report {
+    /// Notes where the bodies are at the start.
+    pub(super) fn start(scene: String, method: Method, run: &Headless) -> Self {
+        let bodies = run.bodies().map(|(name, body, particles)| {
+            let start = particles.center().to_array();
+            let springs = body.get::<crate::body::Springs>().map_or(0, |springs| springs.len());
+            BodyReport {
+                name: name.into(),
+                particles: particles.len(),
+                springs,
+                start,
+                center: start,
+                distance: 0.0,
+                status: "running",
+            }
+        });
+        Self {
+            scene,
+            method: method.name(),
+            dt: run.clock().dt(),
+            time: 0.0,
+            steps: 0,
+            wall_seconds: 0.0,
+            force_evaluations: 0,
+            spring_updates: 0,
+            hash: String::new(),
+            threads: 0,
+            bodies: bodies.collect(),
+        }
+    }
+
+    /// Notes how it ended.
+    pub(super) fn finish(&mut self, run: &Headless, wall_seconds: f64, threads: usize) {
+        let (clock, cost) = (run.clock(), run.cost());
+        (self.time, self.steps) = (clock.time(), clock.step());
+        (self.wall_seconds, self.threads) = (wall_seconds, threads);
+        (self.force_evaluations, self.spring_updates) = (cost.force_evaluations, cost.spring_updates);
+        self.hash = format!("{:016x}", state_hash(run.bodies().map(|(_, _, particles)| particles)));
+        for (report, (_, body, particles)) in self.bodies.iter_mut().zip(run.bodies()) {
+            report.center = particles.center().to_array();
+            report.distance = DVec3::from(report.start).distance(particles.center());
+            report.status = if body.contains::<Frozen>() { "frozen" } else { "running" };
+        }
+    }
+}
+
+impl fmt::Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        /// A scene of thousands is summed up by its first bodies.
+        const SHOWN: usize = 20;
+        let Self { scene, method, dt, time, steps, wall_seconds, hash, .. } = self;
+        write!(f, "{scene}: {steps} steps of {dt} with {method} to t = {time}, in {wall_seconds:.2} s (hash {hash})")?;
+        for body in self.bodies.iter().take(SHOWN) {
+            let [x, y, z] = body.center;
+            write!(
+                f,
+                "\n  {}: {}, {:.4} from its start, at ({x:.4}, {y:.4}, {z:.4})",
+                body.name, body.status, body.distance
+            )?;
+        }
+        match self.bodies.len().saturating_sub(SHOWN) {
+            0 => Ok(()),
+            more => write!(f, "\n  and {more} more (--json has all)"),
+        }
+    }
+}

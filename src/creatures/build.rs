@@ -1,0 +1,168 @@
+//! Blueprint to body.
+
+use std::borrow::Cow;
+
+use bevy::{
+    ecs::{prelude::*, system::EntityCommand},
+    math::DVec3,
+};
+
+use super::{Creature, Friction, GardenWorm, Look, Plan, RawBody, RawParticle};
+use crate::body::{
+    BodyError, Muscle, Muscles, Particle, ParticleId, Particles, SpineFriction, Spring, SpringId, Springs,
+};
+
+/// Where a creature is put, and which way it looks.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Pose {
+    /// What is added to every position, after turning.
+    pub at: DVec3,
+    /// Degrees about the vertical; positive turns from +x (0) towards +z (90), to the right.
+    pub heading: f64,
+}
+
+impl Pose {
+    /// The cosine and sine of the heading, exact at whole quarter turns: a worm that crawls along an axis stays on it to the last bit.
+    fn direction(self) -> (f64, f64) {
+        let degrees = self.heading % 360.0;
+        let quarters = (degrees / 90.0).round();
+        let (sin, cos) = libm::sincos((degrees - quarters * 90.0).to_radians());
+        let (cos, sin) = match quarters.rem_euclid(4.0) as u8 {
+            0 => (cos, sin),
+            1 => (-sin, cos),
+            2 => (-cos, -sin),
+            _ => (sin, -cos),
+        };
+        // Adding zero makes a plain 0 of −0, which would travel into velocities and from there into hashes.
+        (cos + 0.0, sin + 0.0)
+    }
+}
+
+/// The components of a body, ready to be put on an entity.
+///
+/// It is an [`EntityCommand`]: `commands.spawn(Name::new("worm")).queue(body)`, or `body.apply(entity)` with an `EntityWorldMut`.
+/// Muscles and friction are only put there if the creature has any.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Body {
+    /// Its masses.
+    pub particles: Particles,
+    /// Its springs.
+    pub springs: Springs,
+    /// What drives its springs, if anything does.
+    pub muscles: Option<Muscles>,
+    /// Friction along its spine, if it feels any.
+    pub friction: Option<SpineFriction>,
+    /// How it wants to be drawn.
+    pub look: Look,
+}
+
+impl EntityCommand for Body {
+    type Out = ();
+
+    fn apply(self, mut entity: EntityWorldMut) {
+        entity.insert((self.particles, self.springs, self.look));
+        if let Some(muscles) = self.muscles {
+            entity.insert(muscles);
+        }
+        if let Some(friction) = self.friction {
+            entity.insert(friction);
+        }
+    }
+}
+
+impl Creature {
+    /// Builds its body at a place.
+    ///
+    /// # Errors
+    /// Where two places of the blueprint contradict each other: an end that is not a particle, a spine that names a particle twice,
+    /// friction without a spine; and where a number is not allowed, which files refuse earlier.
+    pub fn body(&self, pose: Pose) -> Result<Body, BodyError> {
+        let (raw, drag) = match &self.body {
+            Plan::Raw(raw) => (Cow::Borrowed(raw), 0.0),
+            Plan::GardenWorm(worm) => (Cow::Owned(worm.raw()), GardenWorm::DRAG),
+        };
+        let particles = particles(&raw, pose)?;
+        let springs = springs(&raw, &particles)?;
+        let muscles = muscles(&raw, &springs)?;
+        let friction = match (&self.body, self.friction) {
+            (Plan::Raw(_), None) => None,
+            (_, friction) => Some(spine_friction(&raw, friction.unwrap_or_default(), drag, &particles)?),
+        };
+        if friction.is_none() && !raw.spine.is_empty() {
+            // The spine is checked even where nothing uses it, so that a mistake in it does not wait for the friction.
+            SpineFriction::new(raw.spine.iter().copied().map(ParticleId), &particles)?;
+        }
+        Ok(Body { particles, springs, muscles, friction, look: self.look() })
+    }
+}
+
+fn particles(raw: &RawBody, pose: Pose) -> Result<Particles, BodyError> {
+    let (cos, sin) = pose.direction();
+    let turn = |(x, y, z): (f64, f64, f64)| DVec3::new(x * cos - z * sin, y, x * sin + z * cos);
+    Particles::new(raw.particles.iter().map(|&RawParticle { position, velocity, mass, pinned }| Particle {
+        position: turn(position) + pose.at,
+        velocity: turn(velocity),
+        mass,
+        pinned,
+    }))
+}
+
+fn springs(raw: &RawBody, particles: &Particles) -> Result<Springs, BodyError> {
+    let distance = |(a, b): (u32, u32)| {
+        let position = |i: u32| raw.particles.get(i as usize).map(|particle| DVec3::from(particle.position));
+        // An end that is not there is reported by the constructor; any length will do until then.
+        position(a).zip(position(b)).map_or(1.0, |(a, b)| a.distance(b))
+    };
+    for (i, spring) in raw.springs.iter().enumerate() {
+        if spring.rest_length.is_none() && spring.ends.0 != spring.ends.1 && distance(spring.ends) == 0.0 {
+            return Err(BodyError::Inconsistent {
+                path: format!("springs[{i}].rest_length"),
+                problem: format!(
+                    "is left out, and particles {} and {} start in the same place; give a rest_length above 0",
+                    spring.ends.0, spring.ends.1
+                ),
+            });
+        }
+    }
+    Springs::new(
+        raw.springs.iter().map(|spring| Spring {
+            ends: [ParticleId(spring.ends.0), ParticleId(spring.ends.1)],
+            stiffness: spring.stiffness,
+            damping: spring.damping,
+            rest_length: spring.rest_length.unwrap_or_else(|| distance(spring.ends)),
+        }),
+        particles,
+    )
+}
+
+fn muscles(raw: &RawBody, springs: &Springs) -> Result<Option<Muscles>, BodyError> {
+    let muscles = (0..).zip(&raw.springs).filter_map(|(i, spring)| {
+        spring.muscle.map(|muscle| Muscle {
+            spring: SpringId(i),
+            wave: muscle.wave,
+            amplitude: muscle.amplitude,
+            period: muscle.period,
+            phase: muscle.phase,
+            ramp: muscle.ramp,
+        })
+    });
+    Ok(Some(Muscles::new(muscles, springs)?).filter(|muscles| !muscles.is_empty()))
+}
+
+fn spine_friction(
+    raw: &RawBody,
+    friction: Friction,
+    drag: f64,
+    particles: &Particles,
+) -> Result<SpineFriction, BodyError> {
+    if raw.spine.is_empty() {
+        return Err(BodyError::Inconsistent {
+            path: "friction".into(),
+            problem: "works along a spine, and this body has none; give `spine: [tail, …, head]` in its body".into(),
+        });
+    }
+    SpineFriction::new(raw.spine.iter().copied().map(ParticleId), particles)?
+        .with_ratchet(friction.ratchet)
+        .with_drag(friction.drag.unwrap_or(drag))?
+        .with_grip(friction.grip)
+}

@@ -1,0 +1,71 @@
+//! Text to data, with the file, line, column and field of what is wrong.
+
+use ron::{Options, extensions::Extensions};
+use serde::{Deserialize, Deserializer, de::DeserializeOwned};
+
+use super::FileError;
+
+/// How files are read and written: `Some(x)` may be written `x`, and `Raw(particles: …)` needs no second pair of brackets.
+pub(crate) fn options() -> Options {
+    Options::default().with_default_extension(Extensions::IMPLICIT_SOME | Extensions::UNWRAP_VARIANT_NEWTYPES)
+}
+
+/// A file that says only which version it is. Read when the file as a whole cannot be: what is unknown in it may belong to
+/// another version.
+pub(crate) trait CurrentVersion: DeserializeOwned {
+    /// Reads nothing but the version.
+    type OnlyVersion: DeserializeOwned;
+}
+
+/// Reads a version, which must be 1.
+pub(crate) fn version<'de, D: Deserializer<'de>>(deserializer: D) -> Result<u32, D::Error> {
+    match u32::deserialize(deserializer)? {
+        1 => Ok(1),
+        other => Err(serde::de::Error::custom(format_args!(
+            "version {other} is not known to this program; it reads version: 1"
+        ))),
+    }
+}
+
+/// Reads `text`, the content of `file`.
+pub(crate) fn parse<T: CurrentVersion>(text: &str, file: &str) -> Result<T, FileError> {
+    read(text, file).map_err(|error| match read::<T::OnlyVersion>(text, file) {
+        Err(version @ FileError::Value { .. }) if version.to_string().contains("is not known to this program") => {
+            version
+        }
+        _ => error,
+    })
+}
+
+fn read<T: DeserializeOwned>(text: &str, file: &str) -> Result<T, FileError> {
+    let fail = |error: ron::error::SpannedError, field: String| FileError::Value {
+        file: file.into(),
+        line: error.span.start.line,
+        column: error.span.start.col,
+        field: field_name(&field),
+        problem: problem(&error.code),
+    };
+    let mut deserializer =
+        ron::Deserializer::from_str_with_options(text, &options()).map_err(|error| fail(error, String::new()))?;
+    let value = serde_path_to_error::deserialize(&mut deserializer).map_err(|error| {
+        let field = error.path().to_string();
+        fail(deserializer.span_error(error.into_inner()), field)
+    })?;
+    deserializer.end().map_err(|error| fail(deserializer.span_error(error), String::new()))?;
+    Ok(value)
+}
+
+/// The path of a field as messages about bodies and parameter paths write it.
+fn field_name(path: &str) -> String {
+    let path = path.trim_end_matches(['?', '.']);
+    let path = path.strip_prefix("body.Raw.").or_else(|| path.strip_prefix("body.GardenWorm.")).unwrap_or(path);
+    if path.is_empty() { String::new() } else { format!("{path}: ") }
+}
+
+fn problem(error: &ron::Error) -> String {
+    match error {
+        ron::Error::MissingStructField { field, .. } => format!("the field `{field}` is missing; it has no default"),
+        ron::Error::DuplicateStructField { field, .. } => format!("the field `{field}` is given twice; give it once"),
+        other => other.to_string(),
+    }
+}

@@ -1,0 +1,69 @@
+//! Many steps of a body, in the widest vectors that the processor has.
+
+use super::{
+    Model, Real, State,
+    integrators::{Integrator, Method, RungeKutta4, SemiImplicitEuler},
+};
+
+/// Which time each step has: t = t_base + (n − n_base)·dt with a whole number n, so that time does not drift.
+#[derive(Clone, Copy, Debug, PartialEq, bevy::reflect::Reflect)]
+pub struct Timeline {
+    /// The step.
+    pub dt: f64,
+    /// n_base.
+    pub base_step: u64,
+    /// t_base, the time of the base step.
+    pub base_time: f64,
+}
+
+impl Timeline {
+    /// The time of a step, no earlier than the base step.
+    #[inline(always)]
+    pub fn time_at(&self, step: u64) -> f64 {
+        self.base_time + (step - self.base_step) as f64 * self.dt
+    }
+}
+
+/// A number of steps to take with a body, or with several side by side.
+#[derive(Debug)]
+pub struct Advance<'a, R, const D: usize> {
+    /// The body.
+    pub model: &'a mut Model<R, D>,
+    /// Where it is and how it moves; moved on by the steps.
+    pub state: &'a mut State<R, D>,
+    /// The method.
+    pub method: Method,
+    /// The time of each step.
+    pub timeline: Timeline,
+    /// The first step to take.
+    pub first: u64,
+    /// How many steps to take.
+    pub steps: u64,
+}
+
+impl<R: Real, const D: usize> Advance<'_, R, D> {
+    /// Takes the steps. Which vectors the processor has decides how fast, and not what comes out.
+    pub fn run(self) {
+        pulp::Arch::new().dispatch(self);
+    }
+
+    #[inline(always)]
+    fn run_with<I: Integrator<R, D>>(self) {
+        let mut integrator = I::new(self.state.position.len());
+        for step in self.first..self.first + self.steps {
+            integrator.step(self.model, self.state, self.timeline.time_at(step));
+        }
+    }
+}
+
+impl<R: Real, const D: usize> pulp::NullaryFnOnce for Advance<'_, R, D> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        match self.method {
+            Method::SemiImplicitEuler => self.run_with::<SemiImplicitEuler<R, D>>(),
+            Method::RungeKutta4 => self.run_with::<RungeKutta4<R, D>>(),
+        }
+    }
+}

@@ -1,0 +1,34 @@
+//! Quantities that mechanics conserves, or loses in a known way.
+
+use bevy::math::DVec3;
+
+use crate::body::{Particles, SpringId};
+
+use super::{BodyParts, rest_length};
+
+/// Kinetic energy, ½ Σ m v².
+pub fn kinetic_energy(particles: &Particles) -> f64 {
+    particles.velocities().zip(particles.masses()).map(|(v, m)| 0.5 * m * v.length_squared()).sum()
+}
+
+/// Elastic energy at `time`, ½ Σ k (l − L)².
+pub fn elastic_energy(body: &BodyParts<'_>, time: f64) -> f64 {
+    let positions: Vec<_> = body.particles.positions().collect();
+    let energy = |(i, spring): (usize, crate::body::Spring)| {
+        let [a, b] = spring.ends.map(|end| positions[end.index()]);
+        let stretch = a.distance(b) - rest_length(body.springs, body.muscles, SpringId(i as u32), time);
+        0.5 * spring.stiffness * stretch * stretch
+    };
+    body.springs.iter().enumerate().map(energy).sum()
+}
+
+/// Momentum, Σ m v.
+pub fn momentum(particles: &Particles) -> DVec3 {
+    particles.velocities().zip(particles.masses()).map(|(v, &m)| v * m).sum()
+}
+
+/// Angular momentum about the origin, Σ m x × v.
+pub fn angular_momentum(particles: &Particles) -> DVec3 {
+    let moments = particles.positions().zip(particles.velocities()).zip(particles.masses());
+    moments.map(|((x, v), &m)| x.cross(v) * m).sum()
+}

@@ -1,0 +1,134 @@
+//! Friction along and across the spine.
+//!
+//! `ratchet`: s = S·v; if s < 0, v −= s S (Miller 1988). `drag` and `grip` are rates at which forward and sideways sliding die away.
+//! A method either lets them act once at the end of its step ([`Model::apply_friction`]), as the documents do, or
+//! asks in each of its stages what friction admits ([`Model::admit_velocity`], [`Model::admit_acceleration`]): there, a mass that
+//! does not slide forward and is pushed back stays where it is.
+
+use crate::body::Ground;
+
+use super::{
+    Model, Real,
+    forces::direction,
+    model::{FrictionRow, SpineRow},
+};
+
+/// A mass that the push back brings to rest within this fraction of a step is at rest.
+const AT_ONCE: f64 = 1e-9;
+
+/// Directions in which friction acts on one mass.
+struct Frame<R, const D: usize> {
+    /// Forward along the spine, S.
+    spine: [R; D],
+    /// Forward along the surface, S_t; without a ground, S itself.
+    forward: [R; D],
+    /// Sideways, q = n × S_t with the surface's normal n; without a ground, n points up.
+    side: [R; D],
+    /// 1 where the mass touches the ground or there is none, else 0.
+    touches: R,
+}
+
+impl<R: Real, const D: usize> Model<R, D> {
+    #[inline(always)]
+    fn frame(&self, row: SpineRow, position: &[[R; D]]) -> Frame<R, D> {
+        let (zero, one) = (R::splat(0.0), R::splat(1.0));
+        let spine = direction(position[row.previous as usize], position[row.next as usize]).1;
+        let mut frame = Frame { spine, forward: spine, side: [zero; D], touches: one };
+        if D == 3 {
+            if let Some(Ground::Flat) = self.ground {
+                frame.touches =
+                    position[row.particle as usize][1].if_below(R::splat(Ground::CONTACT_DISTANCE), one, zero);
+                let mut level = spine;
+                level[1] = zero;
+                frame.forward = direction([zero; D], level).1;
+            }
+            let mut side = [zero; D];
+            side[0] = frame.forward[2];
+            side[2] = -frame.forward[0];
+            frame.side = direction([zero; D], side).1;
+        }
+        frame
+    }
+
+    /// Lets friction act on all velocities for a whole step: the ratchet first, then drag and grip as exact decays over dt.
+    #[inline(always)]
+    pub fn apply_friction(&self, position: &[[R; D]], velocity: &mut [[R; D]]) {
+        let Some(friction) = self.friction else { return };
+        for &row in &self.spine {
+            let frame = self.frame(row, position);
+            let v = &mut velocity[row.particle as usize];
+            ratchet(&friction, &frame, v);
+            if friction.has_drag {
+                let zero = R::splat(0.0);
+                let sliding = dot(*v, frame.forward);
+                subtract(v, frame.forward, zero.if_below(sliding, sliding, zero) * friction.drag_loss * frame.touches);
+            }
+            if friction.has_grip && D == 3 {
+                subtract(v, frame.side, dot(*v, frame.side) * friction.grip_loss * frame.touches);
+            }
+        }
+    }
+
+    /// Takes from all velocities what friction does not admit: sliding back along the spine.
+    #[inline(always)]
+    pub fn admit_velocity(&self, position: &[[R; D]], velocity: &mut [[R; D]]) {
+        let Some(friction) = self.friction else { return };
+        for &row in &self.spine {
+            ratchet(&friction, &self.frame(row, position), &mut velocity[row.particle as usize]);
+        }
+    }
+
+    /// Adds drag and grip to all accelerations, and takes from them what friction does not admit: that a mass which does not slide forward starts
+    /// to slide back. `velocity` is admitted already.
+    #[inline(always)]
+    pub fn admit_acceleration(&self, position: &[[R; D]], velocity: &[[R; D]], acceleration: &mut [[R; D]]) {
+        let Some(friction) = self.friction else { return };
+        let zero = R::splat(0.0);
+        for &row in &self.spine {
+            let frame = self.frame(row, position);
+            let v = velocity[row.particle as usize];
+            let a = &mut acceleration[row.particle as usize];
+            if friction.has_drag {
+                let sliding = dot(v, frame.forward);
+                subtract(a, frame.forward, zero.if_below(sliding, sliding, zero) * friction.drag * frame.touches);
+            }
+            if friction.has_grip && D == 3 {
+                subtract(a, frame.side, dot(v, frame.side) * friction.grip * frame.touches);
+            }
+            if friction.ratchet {
+                let push = dot(*a, frame.spine);
+                let back = push.if_below(zero, push, zero);
+                // What the push would stop at once is at rest: a speed of rounding errors must not decide.
+                let soon = dot(v, frame.spine) + push * R::splat(self.dt * AT_ONCE);
+                let held = soon.if_below(zero, back, zero);
+                subtract(a, frame.spine, held * frame.touches);
+            }
+        }
+    }
+}
+
+#[inline(always)]
+fn ratchet<R: Real, const D: usize>(friction: &FrictionRow<R>, frame: &Frame<R, D>, v: &mut [R; D]) {
+    if friction.ratchet {
+        let zero = R::splat(0.0);
+        let sliding = dot(*v, frame.spine);
+        subtract(v, frame.spine, sliding.if_below(zero, sliding, zero) * frame.touches);
+    }
+}
+
+#[inline(always)]
+fn dot<R: Real, const D: usize>(a: [R; D], b: [R; D]) -> R {
+    let mut sum = a[0] * b[0];
+    for axis in 1..D {
+        sum += a[axis] * b[axis];
+    }
+    sum
+}
+
+/// v −= amount·along
+#[inline(always)]
+fn subtract<R: Real, const D: usize>(v: &mut [R; D], along: [R; D], amount: R) {
+    for axis in 0..D {
+        v[axis] -= amount * along[axis];
+    }
+}

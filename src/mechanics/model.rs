@@ -1,0 +1,304 @@
+//! A body, or several of equal topology side by side, in the layout that steps work on.
+
+use crate::body::{Epoch, Gravity, Ground, Muscle, Muscles, Particles, SpineFriction, Spring, Springs, Wave};
+
+use super::{Real, integrators::Method};
+
+/// Components of one body, borrowed.
+#[derive(Clone, Copy, Debug)]
+pub struct BodyParts<'a> {
+    /// Its particles.
+    pub particles: &'a Particles,
+    /// Its springs.
+    pub springs: &'a Springs,
+    /// Its muscles, if it has any.
+    pub muscles: Option<&'a Muscles>,
+    /// Its friction, if it has any.
+    pub friction: Option<&'a SpineFriction>,
+    /// Its gravity, if it has any.
+    pub gravity: Option<Gravity>,
+    /// The ground that it stands on, if any.
+    pub ground: Option<Ground>,
+    /// The method that steps it.
+    pub method: Method,
+}
+
+impl BodyParts<'_> {
+    /// Whether the body lies on a line along x and nothing can move it off: no gravity, no ground, every y and z the same and at rest. One
+    /// dimension is enough to step it then.
+    pub fn on_axis(&self) -> bool {
+        let [_, y, z] = self.particles.position_columns();
+        let [_, vy, vz] = self.particles.velocity_columns();
+        let level = |column: &[f64]| column.iter().all(|value| *value == column[0]);
+        let still = |column: &[f64]| column.iter().all(|value| *value == 0.0);
+        self.gravity.is_none() && self.ground.is_none() && level(y) && level(z) && still(vy) && still(vz)
+    }
+
+    /// Whether both bodies can be stepped side by side: the same graph of springs, muscles and spine, and the same rules; numbers may differ.
+    pub fn same_topology(&self, other: &Self) -> bool {
+        fn driven<'a>(muscles: Option<&'a Muscles>) -> impl Iterator<Item = (u32, Wave)> + 'a {
+            muscles.into_iter().flat_map(Muscles::iter).map(|muscle| (muscle.spring.0, muscle.wave))
+        }
+        fn rule(friction: Option<&SpineFriction>) -> Option<(bool, &[crate::body::ParticleId])> {
+            friction.map(|friction| (friction.ratchet(), friction.spine()))
+        }
+        self.method == other.method
+            && self.particles.len() == other.particles.len()
+            && self.springs.ends() == other.springs.ends()
+            && driven(self.muscles).eq(driven(other.muscles))
+            && rule(self.friction) == rule(other.friction)
+            && self.ground == other.ground
+            && self.gravity.is_some() == other.gravity.is_some()
+    }
+}
+
+/// Positions and velocities of the particles, `D` coordinates each.
+#[derive(Clone, Debug, Default)]
+pub struct State<R, const D: usize> {
+    /// Positions.
+    pub position: Vec<[R; D]>,
+    /// Velocities.
+    pub velocity: Vec<[R; D]>,
+}
+
+/// One spring as the force loop reads it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct SpringRow<R> {
+    pub(super) ends: [u32; 2],
+    pub(super) stiffness: R,
+    pub(super) damping: R,
+    /// The rest length without muscles.
+    pub(super) rest_length: R,
+    /// Beyond this length the watch holds the body for exploded.
+    pub(super) longest: R,
+}
+
+/// One muscle as the force loop reads it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct MuscleRow<R> {
+    pub(super) spring: u32,
+    pub(super) wave: Wave,
+    pub(super) amplitude: R,
+    pub(super) frequency: R,
+    pub(super) phase: R,
+    pub(super) ramp: R,
+    pub(super) ramp_rate: R,
+    pub(super) epoch_time: R,
+    pub(super) epoch_cycles: R,
+}
+
+impl<R: Real> MuscleRow<R> {
+    fn idle(muscle: Muscle) -> Self {
+        let zero = R::splat(0.0);
+        Self {
+            spring: muscle.spring.0,
+            wave: muscle.wave,
+            amplitude: zero,
+            frequency: zero,
+            phase: zero,
+            ramp: zero,
+            ramp_rate: zero,
+            epoch_time: zero,
+            epoch_cycles: zero,
+        }
+    }
+
+    fn set_lane(&mut self, lane: usize, muscle: Muscle, epoch: Epoch) {
+        self.amplitude.set_lane(lane, muscle.amplitude);
+        self.frequency.set_lane(lane, 1.0 / muscle.period);
+        self.phase.set_lane(lane, muscle.phase);
+        self.ramp.set_lane(lane, muscle.ramp);
+        self.ramp_rate.set_lane(lane, if muscle.ramp > 0.0 { 1.0 / muscle.ramp } else { 0.0 });
+        self.epoch_time.set_lane(lane, epoch.time);
+        self.epoch_cycles.set_lane(lane, epoch.cycles);
+    }
+}
+
+impl MuscleRow<f64> {
+    /// One muscle of a body.
+    pub(super) fn of(muscle: Muscle, epoch: Epoch) -> Self {
+        let mut row = Self::idle(muscle);
+        row.set_lane(0, muscle, epoch);
+        row
+    }
+}
+
+/// A particle of the spine with its neighbours there; at the ends one of them is the particle itself.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct SpineRow {
+    pub(super) particle: u32,
+    pub(super) previous: u32,
+    pub(super) next: u32,
+}
+
+/// Friction rates as the friction rules read them.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct FrictionRow<R> {
+    pub(super) ratchet: bool,
+    pub(super) has_drag: bool,
+    pub(super) has_grip: bool,
+    pub(super) drag: R,
+    pub(super) grip: R,
+    /// 1 − e^(−μ_f dt): what drag takes in a step.
+    pub(super) drag_loss: R,
+    /// 1 − e^(−μ_l dt): what grip takes in a step.
+    pub(super) grip_loss: R,
+}
+
+/// Everything about a body that a step reads and does not change, for as many bodies as [`Real::LANES`], in `D` dimensions (1 for bodies
+/// [on an axis](BodyParts::on_axis), else 3).
+#[derive(Clone, Debug)]
+pub struct Model<R, const D: usize> {
+    pub(super) dt: f64,
+    /// 1/m, and 0 for what is pinned.
+    pub(super) inverse_mass: Vec<R>,
+    pub(super) springs: Vec<SpringRow<R>>,
+    pub(super) muscles: Vec<MuscleRow<R>>,
+    pub(super) spine: Vec<SpineRow>,
+    pub(super) friction: Option<FrictionRow<R>>,
+    pub(super) gravity: Option<R>,
+    pub(super) ground: Option<Ground>,
+    /// Rest lengths at the time of the last evaluation: scratch of the force loop.
+    pub(super) rest: Vec<R>,
+    /// 1 in the lanes where an evaluation met a spring longer than its longest, or of no finite length; else 0.
+    pub(super) overstretched: R,
+}
+
+/// A spring longer than this many rest lengths has exploded.
+pub(super) const LONGEST_STRETCH: f64 = 10.0;
+
+impl<R: Real, const D: usize> Model<R, D> {
+    /// `first` in the first lane, the others in the lanes after it, for steps of `dt`. All have the same
+    /// [topology](BodyParts::same_topology); lanes that are left over hold `first` again, and others that find no lane are left out.
+    pub fn new<'a>(first: &BodyParts<'a>, others: impl IntoIterator<Item = BodyParts<'a>>, dt: f64) -> Self {
+        let mut model = Self::idle(first, dt);
+        let mut others = others.into_iter();
+        model.set_lane(0, first);
+        for lane in 1..R::LANES {
+            model.set_lane(lane, &others.next().unwrap_or(*first));
+        }
+        model
+    }
+
+    /// The topology of `body`, without its numbers.
+    fn idle(body: &BodyParts<'_>, dt: f64) -> Self {
+        let zero = R::splat(0.0);
+        let spring = |spring: Spring| SpringRow {
+            ends: [spring.ends[0].0, spring.ends[1].0],
+            stiffness: zero,
+            damping: zero,
+            rest_length: zero,
+            longest: zero,
+        };
+        let spine = body.friction.map_or(&[][..], SpineFriction::spine);
+        Self {
+            dt,
+            inverse_mass: vec![zero; body.particles.len()],
+            springs: body.springs.iter().map(spring).collect(),
+            muscles: body.muscles.into_iter().flat_map(Muscles::iter).map(MuscleRow::idle).collect(),
+            spine: (0..spine.len())
+                .map(|i| SpineRow {
+                    particle: spine[i].0,
+                    previous: spine[i.saturating_sub(1)].0,
+                    next: spine[(i + 1).min(spine.len() - 1)].0,
+                })
+                .collect(),
+            friction: body.friction.map(|friction| FrictionRow {
+                ratchet: friction.ratchet(),
+                has_drag: false,
+                has_grip: false,
+                drag: zero,
+                grip: zero,
+                drag_loss: zero,
+                grip_loss: zero,
+            }),
+            gravity: body.gravity.map(|_| zero),
+            ground: body.ground,
+            rest: vec![zero; body.springs.len()],
+            overstretched: zero,
+        }
+    }
+
+    /// Puts the numbers of `body` into a lane.
+    fn set_lane(&mut self, lane: usize, body: &BodyParts<'_>) {
+        for ((row, &mass), &pinned) in
+            self.inverse_mass.iter_mut().zip(body.particles.masses()).zip(body.particles.pinned())
+        {
+            row.set_lane(lane, if pinned { 0.0 } else { 1.0 / mass });
+        }
+        for (row, spring) in self.springs.iter_mut().zip(body.springs.iter()) {
+            row.stiffness.set_lane(lane, spring.stiffness);
+            row.damping.set_lane(lane, spring.damping);
+            row.rest_length.set_lane(lane, spring.rest_length);
+            row.longest.set_lane(lane, LONGEST_STRETCH * spring.rest_length);
+        }
+        let muscles = body.muscles.into_iter().flat_map(|muscles| muscles.iter().zip(muscles.epochs()));
+        for (row, (muscle, &epoch)) in self.muscles.iter_mut().zip(muscles) {
+            row.set_lane(lane, muscle, epoch);
+        }
+        if let (Some(row), Some(friction)) = (&mut self.friction, body.friction) {
+            row.has_drag |= friction.drag() > 0.0;
+            row.has_grip |= friction.grip() > 0.0;
+            row.drag.set_lane(lane, friction.drag());
+            row.grip.set_lane(lane, friction.grip());
+            row.drag_loss.set_lane(lane, -libm::expm1(-friction.drag() * self.dt));
+            row.grip_loss.set_lane(lane, -libm::expm1(-friction.grip() * self.dt));
+        }
+        if let (Some(row), Some(gravity)) = (&mut self.gravity, body.gravity) {
+            row.set_lane(lane, gravity.acceleration());
+        }
+    }
+
+    /// Whether any evaluation since the model was made met, in this lane, a spring longer than ten rest lengths or of no finite length.
+    pub fn has_exploded(&self, lane: usize) -> bool {
+        self.overstretched.lane(lane) != 0.0
+    }
+
+    /// The first spring that is longer than ten rest lengths, or of no finite length, in a lane of `state`: its index.
+    pub fn exploded_spring(&self, state: &State<R, D>, lane: usize) -> Option<usize> {
+        self.springs.iter().position(|spring| {
+            let [a, b] = spring.ends.map(|end| state.position[end as usize]);
+            let square: f64 = (0..D).map(|axis| b[axis].lane(lane) - a[axis].lane(lane)).map(|d| d * d).sum();
+            // Not `>`: a length that is not a number has exploded, too.
+            !(square.sqrt() < spring.longest.lane(lane))
+        })
+    }
+
+    /// The two particles of a spring.
+    pub fn spring_ends(&self, spring: usize) -> [u32; 2] {
+        self.springs[spring].ends
+    }
+}
+
+impl<R: Real, const D: usize> State<R, D> {
+    /// Room for as many particles.
+    pub fn new(particles: usize) -> Self {
+        Self { position: vec![[R::splat(0.0); D]; particles], velocity: vec![[R::splat(0.0); D]; particles] }
+    }
+
+    /// Reads the first `D` coordinates of a body into a lane.
+    pub fn set_lane(&mut self, lane: usize, particles: &Particles) {
+        let (position, velocity) = (particles.position_columns(), particles.velocity_columns());
+        for axis in 0..D {
+            for (row, &value) in self.position.iter_mut().zip(&position[axis]) {
+                row[axis].set_lane(lane, value);
+            }
+            for (row, &value) in self.velocity.iter_mut().zip(&velocity[axis]) {
+                row[axis].set_lane(lane, value);
+            }
+        }
+    }
+
+    /// Writes a lane back to the body; coordinates beyond `D` stay as they are.
+    pub fn write_lane(&self, lane: usize, particles: &mut Particles) {
+        let (position, velocity) = particles.state_columns_mut();
+        for axis in 0..D {
+            for (row, value) in self.position.iter().zip(&mut position[axis]) {
+                *value = row[axis].lane(lane);
+            }
+            for (row, value) in self.velocity.iter().zip(&mut velocity[axis]) {
+                *value = row[axis].lane(lane);
+            }
+        }
+    }
+}

@@ -1,0 +1,132 @@
+//! How large a step may be, predicted from the springs.
+//!
+//! For masses M, stiffness matrix K and damping matrix C of the linearised body, the fastest oscillation is bounded without any eigenvalue
+//! by sums over neighbours, by Gershgorin's theorem on one of two matrices with the same spectrum:
+//!
+//! - **directional edge bound**: for a spring e, Σ over springs f that share an end with it of w_f |n_e·n_f|/m, with
+//!   directions n and the mass m of the shared end (both ends for e itself). Exact for a chain of three. It leaves out the stiffness
+//!   that a stretched spring has across its line.
+//! - **node bound**: for a particle, 2/m·Σ of w over its springs. Safe in every pose, and looser.
+
+use bevy::math::DVec3;
+
+use crate::body::{ParticleId, Particles, SpringId};
+
+use super::{BodyParts, rest_length};
+
+/// Bounds of one row of the body's equations, from above.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rates {
+    /// κ: of M⁻¹K, a squared frequency.
+    pub stiffness: f64,
+    /// γ: of M⁻¹C, a rate.
+    pub damping: f64,
+}
+
+/// How the damping of the springs goes with their stiffness.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Damping {
+    /// D = βk with the same β in every spring: modes are damped one by one.
+    Proportional,
+    /// Anything else.
+    General,
+}
+
+/// What a method's largest stable step is computed from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StabilityBound {
+    /// One pair of rates a spring (directional) or a particle (node).
+    pub rates: Vec<Rates>,
+    /// How damping goes with stiffness.
+    pub damping: Damping,
+    /// The largest rate of drag or grip, which methods with friction in their stages integrate as a force.
+    pub friction: f64,
+}
+
+/// Bounds the oscillations of a body in its present pose. While a spring is [`stretched`](is_stretched), a body that can move across its
+/// springs gets the node bound; else, and [on an axis](BodyParts::on_axis), where there is no across, the directional one.
+pub fn stability_bound(body: &BodyParts<'_>, stretched: bool) -> StabilityBound {
+    let rates = if stretched && !body.on_axis() { node_rates(body) } else { directional_rates(body) };
+    StabilityBound {
+        rates,
+        damping: damping_law(body),
+        friction: body.friction.map_or(0.0, |friction| friction.drag().max(friction.grip())),
+    }
+}
+
+impl BodyParts<'_> {
+    /// The largest dt at which the body's method is stable, never above the true limit of the linearised body; infinite for a body that
+    /// cannot oscillate.
+    pub fn stability_limit(&self, stretched: bool) -> f64 {
+        self.method.stability_limit(&stability_bound(self, stretched))
+    }
+}
+
+/// Whether a spring is longer than its rest length at `time`.
+pub fn is_stretched(body: &BodyParts<'_>, time: f64) -> bool {
+    body.springs.iter().enumerate().any(|(i, spring)| {
+        let rest = rest_length(body.springs, body.muscles, SpringId(i as u32), time);
+        difference(body.particles, spring.ends).length() > rest
+    })
+}
+
+fn difference(particles: &Particles, [a, b]: [ParticleId; 2]) -> DVec3 {
+    match (particles.position(a), particles.position(b)) {
+        (Some(a), Some(b)) => b - a,
+        _ => DVec3::ZERO,
+    }
+}
+
+fn inverse_masses(particles: &Particles) -> Vec<f64> {
+    particles.masses().iter().zip(particles.pinned()).map(|(m, &pinned)| if pinned { 0.0 } else { 1.0 / m }).collect()
+}
+
+fn directional_rates(body: &BodyParts<'_>) -> Vec<Rates> {
+    let inverse_mass = inverse_masses(body.particles);
+    let mut springs_of = vec![Vec::new(); body.particles.len()];
+    let springs: Vec<_> = body.springs.iter().collect();
+    let directions: Vec<_> =
+        springs.iter().map(|spring| difference(body.particles, spring.ends).normalize_or_zero()).collect();
+    for (i, spring) in springs.iter().enumerate() {
+        for end in spring.ends {
+            springs_of[end.index()].push(i);
+        }
+    }
+    let row = |e: usize| {
+        let mut rates = Rates { stiffness: 0.0, damping: 0.0 };
+        for end in springs[e].ends.map(ParticleId::index) {
+            for &f in &springs_of[end] {
+                // A spring of no length has a direction only once it moves: any.
+                let along = if f == e || directions[e] == DVec3::ZERO || directions[f] == DVec3::ZERO {
+                    1.0
+                } else {
+                    directions[e].dot(directions[f]).abs()
+                };
+                rates.stiffness += springs[f].stiffness * along * inverse_mass[end];
+                rates.damping += springs[f].damping * along * inverse_mass[end];
+            }
+        }
+        rates
+    };
+    (0..springs.len()).map(row).collect()
+}
+
+fn node_rates(body: &BodyParts<'_>) -> Vec<Rates> {
+    let inverse_mass = inverse_masses(body.particles);
+    let mut rates = vec![Rates { stiffness: 0.0, damping: 0.0 }; body.particles.len()];
+    for spring in body.springs.iter() {
+        for end in spring.ends.map(ParticleId::index) {
+            rates[end].stiffness += 2.0 * spring.stiffness * inverse_mass[end];
+            rates[end].damping += 2.0 * spring.damping * inverse_mass[end];
+        }
+    }
+    rates
+}
+
+fn damping_law(body: &BodyParts<'_>) -> Damping {
+    let Some(first) = body.springs.get(SpringId(0)) else { return Damping::Proportional };
+    let same = |(a, b): (f64, f64)| (a - b).abs() <= 1e-12 * a.abs().max(b.abs());
+    let proportional =
+        body.springs.iter().all(|spring| same((spring.damping * first.stiffness, first.damping * spring.stiffness)));
+    if proportional { Damping::Proportional } else { Damping::General }
+}

@@ -1,0 +1,152 @@
+//! What physics works out about a body before it steps it, and again when a parameter changes.
+
+use core::hash::{Hash, Hasher};
+use std::hash::DefaultHasher;
+
+use bevy::{ecs::prelude::*, log::warn, prelude::Name};
+
+use crate::{
+    body::{Gravity, Ground, Muscles, Particles, SpineFriction, Springs},
+    mechanics::{BodyParts, integrators::Method, is_stretched},
+};
+
+use super::{Clock, Frozen};
+
+/// The components of one body that physics reads.
+pub(super) type Parts = (
+    &'static Springs,
+    Option<&'static Muscles>,
+    Option<&'static SpineFriction>,
+    Option<&'static Gravity>,
+    Option<&'static Ground>,
+    &'static Method,
+);
+
+/// Borrows a body's components for mechanics.
+pub(super) fn body_parts<'a>(
+    particles: &'a Particles,
+    (springs, muscles, friction, gravity, ground, method): (
+        &'a Springs,
+        Option<&'a Muscles>,
+        Option<&'a SpineFriction>,
+        Option<&'a Gravity>,
+        Option<&'a Ground>,
+        &'a Method,
+    ),
+) -> BodyParts<'a> {
+    BodyParts {
+        particles,
+        springs,
+        muscles,
+        friction,
+        gravity: gravity.copied(),
+        ground: ground.copied(),
+        method: *method,
+    }
+}
+
+/// What physics has worked out about a body. Brought up to date before every tick.
+#[derive(Clone, Component, Debug, Default)]
+pub struct Plan {
+    /// Equal for bodies that may be stepped side by side; different ones are equal only by a rare accident.
+    pub(super) topology: u64,
+    stability_limit: f64,
+    stretched: bool,
+    /// The dt for which a warning was given last.
+    warned: Option<f64>,
+    /// Why the body cannot be stepped at all.
+    pub(super) misfit: Option<String>,
+}
+
+impl Plan {
+    /// The largest dt at which the body is sure to be stable with its method and in its present pose: never above the true limit of the
+    /// linearised body. Infinite for a body that cannot oscillate.
+    pub fn stability_limit(&self) -> f64 {
+        self.stability_limit
+    }
+}
+
+type Changes = Or<(
+    Added<Plan>,
+    // Steps move particles without marking them as changed, so this tells of edits by others.
+    Changed<Particles>,
+    Changed<Springs>,
+    Changed<SpineFriction>,
+    Changed<Muscles>,
+    Changed<Gravity>,
+    Changed<Ground>,
+    Changed<Method>,
+)>;
+
+/// Plans every body that was changed.
+pub(super) fn plan(clock: Res<Clock>, mut bodies: Query<(&Particles, Parts, &mut Plan), Changes>) {
+    for (particles, parts, mut plan) in &mut bodies {
+        let body = body_parts(particles, parts);
+        plan.misfit = misfit(&body);
+        if plan.misfit.is_some() {
+            continue;
+        }
+        plan.topology = topology(&body);
+        plan.stretched = is_stretched(&body, clock.time());
+        plan.stability_limit = body.stability_limit(plan.stretched);
+    }
+}
+
+/// Plans every body again of which a spring went over its rest length or all came back, and warns where dt is above a limit.
+pub(super) fn watch_limit(
+    clock: Res<Clock>,
+    mut bodies: Query<(Option<&Name>, &Particles, Parts, &mut Plan), Without<Frozen>>,
+) {
+    for (name, particles, parts, mut plan) in &mut bodies {
+        let body = body_parts(particles, parts);
+        if plan.misfit.is_none() && !body.on_axis() {
+            let stretched = is_stretched(&body, clock.time());
+            if stretched != plan.stretched {
+                plan.stretched = stretched;
+                plan.stability_limit = body.stability_limit(stretched);
+            }
+        }
+        let dt = clock.dt();
+        if dt <= plan.stability_limit {
+            plan.warned = None;
+        } else if plan.warned != Some(dt) {
+            plan.warned = Some(dt);
+            warn!(
+                "{}: dt {dt} is above the stability limit {:.4} of {}; expect it to explode, or choose a smaller dt",
+                name.map_or("a body", Name::as_str),
+                plan.stability_limit,
+                body.method.name(),
+            );
+        }
+    }
+}
+
+fn topology(body: &BodyParts<'_>) -> u64 {
+    let mut hasher = DefaultHasher::new();
+    (body.method, body.particles.len(), body.springs.ends()).hash(&mut hasher);
+    for muscle in body.muscles.into_iter().flat_map(Muscles::iter) {
+        (muscle.spring, muscle.wave).hash(&mut hasher);
+    }
+    if let Some(friction) = body.friction {
+        (friction.ratchet(), friction.spine()).hash(&mut hasher);
+    }
+    (body.ground.is_some(), body.gravity.is_some()).hash(&mut hasher);
+    hasher.finish()
+}
+
+/// The first thing that is wrong with a body's components as a whole, if any: components can be put together by hand that were not made for each
+/// other.
+fn misfit(body: &BodyParts<'_>) -> Option<String> {
+    let particles = body.particles.len();
+    let out_of_reach = |index: usize| index >= particles;
+    if body.springs.ends().iter().flatten().any(|end| out_of_reach(end.index())) {
+        return Some(format!("its springs were made for another body; this one has {particles} particles"));
+    }
+    if body.friction.is_some_and(|friction| friction.spine().iter().any(|particle| out_of_reach(particle.index()))) {
+        return Some(format!("its spine was made for another body; this one has {particles} particles"));
+    }
+    if body.muscles.is_some_and(|muscles| muscles.iter().any(|muscle| muscle.spring.index() >= body.springs.len())) {
+        return Some(format!("its muscles were made for another body; this one has {} springs", body.springs.len()));
+    }
+    None
+}

@@ -1,0 +1,45 @@
+//! Back to the start.
+
+use bevy::ecs::prelude::*;
+
+use crate::body::{Muscles, Particles};
+
+use super::{Clock, Cost, Frozen, Previous};
+
+/// Asks for every body to be put back to where it was spawned and for time 0. Frozen bodies go on; parameters stay as they are.
+#[derive(Clone, Copy, Debug, Default, Message)]
+pub struct Restart;
+
+/// The particles that a body was spawned with. Physics puts it there.
+#[derive(Clone, Component, Debug)]
+pub struct StartState(pub Particles);
+
+/// Remembers how a body was spawned.
+pub(super) fn remember_start(add: On<Add, Particles>, bodies: Query<&Particles>, mut commands: Commands) {
+    if let Ok(particles) = bodies.get(add.entity) {
+        commands.entity(add.entity).insert(StartState(particles.clone()));
+    }
+}
+
+/// Obeys [`Restart`].
+pub(super) fn restart(
+    mut asked: MessageReader<Restart>,
+    mut clock: ResMut<Clock>,
+    mut cost: ResMut<Cost>,
+    mut bodies: Query<(Entity, &mut Particles, &mut Previous, &StartState, Option<&mut Muscles>)>,
+    mut commands: Commands,
+) {
+    if asked.read().count() == 0 {
+        return;
+    }
+    clock.rewind();
+    *cost = Cost::default();
+    for (body, mut particles, mut previous, start, muscles) in &mut bodies {
+        particles.set_state(&start.0);
+        previous.position.clone_from(start.0.position_columns());
+        if let Some(mut muscles) = muscles {
+            muscles.rewind();
+        }
+        commands.entity(body).remove::<Frozen>();
+    }
+}

@@ -1,0 +1,176 @@
+//! All steps of a tick, in one parallel pass over the bodies.
+//!
+//! Bodies of equal topology are stepped side by side in lanes, each group from its first step of the tick to its last while its state is
+//! in the cache. Which bodies share a group, and which thread has it, changes no bits.
+
+use bevy::{ecs::prelude::*, tasks::ComputeTaskPool, time::Time};
+use core::ops::Range;
+use std::time::Instant;
+
+use crate::{
+    body::{ParticleId, Particles},
+    mechanics::{Advance, BodyParts, Lanes, Model, Real, State, Timeline, integrators::Method},
+};
+
+use super::{
+    Clock, Frozen, Plan,
+    plan::{Parts, body_parts},
+    watch::{Explosion, Verdict},
+};
+
+/// How many bodies are stepped side by side: one AVX-512 register of f64, two of AVX, four of SSE2.
+const LANES: usize = 8;
+
+/// What the physics has cost.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Resource)]
+pub struct Cost {
+    /// Forces on a whole body, counted since the start.
+    pub force_evaluations: u64,
+    /// Forces on one spring, counted since the start.
+    pub spring_updates: u64,
+    /// Steps of the last tick.
+    pub steps: u64,
+    /// Seconds that the steps of the last tick took.
+    pub seconds: f64,
+}
+
+/// A body on its way through a tick.
+struct Item<'a> {
+    particles: Mut<'a, Particles>,
+    parts: Components<'a>,
+    plan: &'a Plan,
+    verdict: Mut<'a, Verdict>,
+    on_axis: bool,
+}
+
+type Components<'a> = (
+    &'a crate::body::Springs,
+    Option<&'a crate::body::Muscles>,
+    Option<&'a crate::body::SpineFriction>,
+    Option<&'a crate::body::Gravity>,
+    Option<&'a crate::body::Ground>,
+    &'a Method,
+);
+
+impl Item<'_> {
+    fn body(&self) -> BodyParts<'_> {
+        body_parts(&self.particles, self.parts)
+    }
+
+    fn matches(&self, other: &Self) -> bool {
+        self.plan.topology == other.plan.topology
+            && self.on_axis == other.on_axis
+            && self.body().same_topology(&other.body())
+    }
+}
+
+/// Takes all steps of this tick with every body that is not frozen.
+pub(super) fn step(
+    time: Res<Time>,
+    mut clock: ResMut<Clock>,
+    mut cost: ResMut<Cost>,
+    mut bodies: Query<(&mut Particles, Parts, &Plan, &mut Verdict), Without<Frozen>>,
+) {
+    let start = Instant::now();
+    let steps = clock.take_steps(time.delta_secs_f64());
+    (cost.steps, cost.seconds) = (steps, 0.0);
+    if steps == 0 {
+        return;
+    }
+    let (timeline, range) = (clock.timeline(), clock.step()..clock.step() + steps);
+    let mut items: Vec<_> = bodies
+        .iter_mut()
+        .filter_map(|(particles, parts, plan, mut verdict)| {
+            if let Some(reason) = plan.misfit.clone() {
+                let (step, time) = (range.start, timeline.time_at(range.start));
+                *verdict = Verdict(Some(Explosion { step, time, particle: ParticleId(0), reason }));
+                return None;
+            }
+            let body = body_parts(&particles, parts);
+            cost.force_evaluations += steps * body.method.evaluations();
+            cost.spring_updates += steps * body.method.evaluations() * body.springs.len() as u64;
+            let on_axis = body.on_axis();
+            Some(Item { particles, parts, plan, verdict, on_axis })
+        })
+        .collect();
+    items.sort_by_key(|item| (item.plan.topology, item.on_axis));
+    let mut groups: Vec<_> = items.chunk_by_mut(Item::matches).flat_map(|alike| alike.chunks_mut(LANES)).collect();
+    match &mut groups[..] {
+        [] => {}
+        [one] => step_group(one, timeline, range),
+        many => {
+            let pool = ComputeTaskPool::get();
+            let share = many.len().div_ceil(4 * pool.thread_num());
+            pool.scope(|scope| {
+                for part in many.chunks_mut(share) {
+                    let range = range.clone();
+                    scope.spawn(async move {
+                        for group in part {
+                            step_group(group, timeline, range.clone());
+                        }
+                    });
+                }
+            });
+        }
+    }
+    clock.advance(steps);
+    cost.seconds = start.elapsed().as_secs_f64();
+}
+
+fn step_group(group: &mut [Item<'_>], timeline: Timeline, steps: Range<u64>) {
+    match (group.len(), group.first().is_some_and(|first| first.on_axis)) {
+        (0, _) => {}
+        (1, true) => step_lanes::<f64, 1>(group, timeline, steps),
+        (1, false) => step_lanes::<f64, 3>(group, timeline, steps),
+        (_, true) => step_lanes::<Lanes<LANES>, 1>(group, timeline, steps),
+        (_, false) => step_lanes::<Lanes<LANES>, 3>(group, timeline, steps),
+    }
+}
+
+fn step_lanes<R: Real, const D: usize>(group: &mut [Item<'_>], timeline: Timeline, steps: Range<u64>) {
+    let Some((first, others)) = group.split_first() else { return };
+    let (first, others) = (first.body(), others.iter().map(Item::body));
+    let (method, particles) = (first.method, first.particles.len());
+    let mut model = Model::<R, D>::new(&first, others, timeline.dt);
+    let mut state = State::new(particles);
+    for lane in 0..R::LANES {
+        state.set_lane(lane, &group[lane.min(group.len() - 1)].particles);
+    }
+    let steps_to_take = steps.end - steps.start;
+    Advance { model: &mut model, state: &mut state, method, timeline, first: steps.start, steps: steps_to_take }.run();
+    for (lane, item) in group.iter_mut().enumerate() {
+        if model.has_exploded(lane) || model.exploded_spring(&state, lane).is_some() {
+            retrace::<D>(item, timeline, steps.clone());
+        } else {
+            state.write_lane(lane, item.particles.bypass_change_detection());
+        }
+    }
+}
+
+/// Takes the steps of a tick again, one by one and with one body alone, up to the last after which it had not exploded. The body's bits alone are those
+/// that it had in its lane, so this finds the step, whatever ticks and frames there were.
+fn retrace<const D: usize>(item: &mut Item<'_>, timeline: Timeline, steps: Range<u64>) {
+    let body = item.body();
+    let method = body.method;
+    let mut model = Model::<f64, D>::new(&body, [], timeline.dt);
+    let mut state = State::new(body.particles.len());
+    state.set_lane(0, body.particles);
+    for step in steps {
+        let good = state.clone();
+        Advance { model: &mut model, state: &mut state, method, timeline, first: step, steps: 1 }.run();
+        let Some(spring) = model.exploded_spring(&state, 0) else { continue };
+        let ends = model.spring_ends(spring);
+        let [a, b] = ends.map(|end| state.velocity[end as usize].iter().map(|v| v * v).sum::<f64>());
+        // The faster end, or the one that is not finite.
+        let particle = ParticleId(if b.is_nan() || b > a { ends[1] } else { ends[0] });
+        let reason = if state.position[particle.index()].iter().all(|x| x.is_finite()) {
+            format!("spring {spring} is longer than ten rest lengths")
+        } else {
+            "its position is not finite".into()
+        };
+        good.write_lane(0, item.particles.bypass_change_detection());
+        *item.verdict = Verdict(Some(Explosion { step: step + 1, time: timeline.time_at(step + 1), particle, reason }));
+        return;
+    }
+    state.write_lane(0, item.particles.bypass_change_detection());
+}

@@ -1,0 +1,240 @@
+//! A scene file as data.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Deserializer, Serialize, de};
+
+use crate::{
+    body::Ground,
+    creatures::{CurrentVersion, numbers, version},
+    mechanics::integrators::Method,
+    physics::Clock,
+};
+
+/// The step of the document, "0.5 milliseconds", which it takes with semi-implicit Euler. The default of every scene.
+pub const DOCUMENT_DT: f64 = 0.0005;
+
+/// A scene: what `*.scene.ron` holds.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename = "Scene", deny_unknown_fields)]
+pub struct SceneFile {
+    /// The version of the format: 1.
+    #[serde(deserialize_with = "version")]
+    pub version: u32,
+    /// Its title, for people.
+    pub title: String,
+    /// Gravity towards −y, zero or more. Left out: 0, none.
+    #[serde(default, deserialize_with = "numbers::non_negative")]
+    pub gravity: f64,
+    /// What its creatures stand on. Left out: nothing.
+    #[serde(default)]
+    pub ground: Option<Ground>,
+    /// Its creatures.
+    pub creatures: Vec<Placement>,
+    /// What stands around. Left out: nothing.
+    #[serde(default)]
+    pub props: Props,
+    /// Where the camera starts. Left out: [`Camera::default`].
+    #[serde(default)]
+    pub camera: Camera,
+    /// Its clock. Left out: [`SceneClock::default`].
+    #[serde(default)]
+    pub clock: SceneClock,
+    /// The method of integration. Left out: semi-implicit Euler.
+    #[serde(default)]
+    pub method: Method,
+    /// How much error it can afford. Left out: one pixel.
+    #[serde(default)]
+    pub budget: Budget,
+    /// Parameters that differ from those of its creatures, by path, such as `"worm.springs.stiffness": 2`. Left out: none.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub set: BTreeMap<String, f64>,
+}
+
+/// Reads nothing but the version of a scene file.
+#[derive(Deserialize)]
+#[serde(rename = "Scene")]
+pub(crate) struct OnlyVersion {
+    #[serde(rename = "version", deserialize_with = "version")]
+    _version: u32,
+}
+
+impl CurrentVersion for SceneFile {
+    type OnlyVersion = OnlyVersion;
+}
+
+/// A creature in a scene.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Placement {
+    /// What it is called in this scene; its parameter paths begin with it. No two creatures share a name.
+    pub name: String,
+    /// The name or file of its blueprint.
+    pub creature: String,
+    /// Where it is put. Left out: the origin.
+    #[serde(default, deserialize_with = "numbers::vector")]
+    pub at: (f64, f64, f64),
+    /// Which way it looks, in degrees about the vertical; positive turns from +x towards +z. Left out: 0, along +x.
+    #[serde(default, deserialize_with = "numbers::finite")]
+    pub heading: f64,
+}
+
+/// What stands around.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Props {
+    /// Nothing.
+    #[default]
+    None,
+    /// The garden; see [`garden`](super::garden) for its lay.
+    Garden {
+        /// The seed of everything random in it.
+        seed: u64,
+    },
+}
+
+/// Where the camera starts.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum Camera {
+    /// Looks at a target from around it.
+    Orbit {
+        /// What it looks at.
+        #[serde(deserialize_with = "numbers::vector")]
+        target: (f64, f64, f64),
+        /// How far it is from the target, above zero.
+        #[serde(deserialize_with = "numbers::positive")]
+        distance: f64,
+        /// Degrees above the horizon, from −90 to 90.
+        #[serde(deserialize_with = "pitch")]
+        pitch: f64,
+        /// Degrees about the vertical; at 0 it stands at +z of the target.
+        #[serde(deserialize_with = "numbers::finite")]
+        yaw: f64,
+    },
+}
+
+impl Default for Camera {
+    /// Twelve lengths from the origin, 25 degrees above the horizon and turned by 30.
+    fn default() -> Self {
+        Self::Orbit { target: (0.0, 0.0, 0.0), distance: 12.0, pitch: 25.0, yaw: 30.0 }
+    }
+}
+
+/// How much error a scene can afford.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Budget {
+    /// As many pixels on a screen that shows it from where its camera starts, above zero.
+    Pixels(#[serde(deserialize_with = "numbers::positive")] f64),
+}
+
+impl Default for Budget {
+    /// One pixel.
+    fn default() -> Self {
+        Self::Pixels(1.0)
+    }
+}
+
+/// The clock of a scene.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "ClockFields", into = "ClockFields")]
+pub struct SceneClock {
+    /// How its step is given.
+    pub step: StepSize,
+    /// How much simulated time passes in a second, from 0 to [`Clock::LARGEST_TIME_SCALE`].
+    pub time_scale: f64,
+}
+
+/// How a scene gives its step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum StepSize {
+    /// As dt, above zero.
+    Dt(f64),
+    /// As a number of steps in each of the 64 ticks of a second, above zero.
+    Substeps(u32),
+}
+
+impl SceneClock {
+    /// How many ticks a second has.
+    pub const TICKS_PER_SECOND: f64 = 64.0;
+
+    /// The step dt.
+    pub fn dt(self) -> f64 {
+        match self.step {
+            StepSize::Dt(dt) => dt,
+            StepSize::Substeps(substeps) => self.time_scale / (Self::TICKS_PER_SECOND * f64::from(substeps)),
+        }
+    }
+}
+
+impl Default for SceneClock {
+    /// The document's step, and one unit of time a second.
+    fn default() -> Self {
+        Self { step: StepSize::Dt(DOCUMENT_DT), time_scale: 1.0 }
+    }
+}
+
+/// The clock as it is written.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename = "Clock", deny_unknown_fields)]
+struct ClockFields {
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "numbers::optional_positive")]
+    dt: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "substeps")]
+    substeps: Option<u32>,
+    #[serde(default = "real_time", deserialize_with = "time_scale")]
+    time_scale: f64,
+}
+
+impl TryFrom<ClockFields> for SceneClock {
+    type Error = &'static str;
+
+    fn try_from(fields: ClockFields) -> Result<Self, Self::Error> {
+        let step = match (fields.dt, fields.substeps) {
+            (Some(_), Some(_)) => return Err("dt and substeps are both given; give one of them"),
+            (None, Some(_)) if fields.time_scale == 0.0 => {
+                return Err("substeps divide what a tick shows, which is nothing at time_scale: 0; give dt");
+            }
+            (None, Some(substeps)) => StepSize::Substeps(substeps),
+            (dt, None) => StepSize::Dt(dt.unwrap_or(DOCUMENT_DT)),
+        };
+        Ok(Self { step, time_scale: fields.time_scale })
+    }
+}
+
+impl From<SceneClock> for ClockFields {
+    fn from(clock: SceneClock) -> Self {
+        let (dt, substeps) = match clock.step {
+            StepSize::Dt(dt) => (Some(dt), None),
+            StepSize::Substeps(substeps) => (None, Some(substeps)),
+        };
+        Self { dt, substeps, time_scale: clock.time_scale }
+    }
+}
+
+fn real_time() -> f64 {
+    1.0
+}
+
+fn time_scale<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+    between(deserializer, 0.0, Clock::LARGEST_TIME_SCALE)
+}
+
+fn pitch<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+    between(deserializer, -90.0, 90.0)
+}
+
+fn between<'de, D: Deserializer<'de>>(deserializer: D, least: f64, most: f64) -> Result<f64, D::Error> {
+    let value = f64::deserialize(deserializer)?;
+    if (least..=most).contains(&value) {
+        Ok(value)
+    } else {
+        Err(de::Error::custom(format_args!("{value} is not allowed; give a number from {least} to {most}")))
+    }
+}
+
+fn substeps<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<u32>, D::Error> {
+    match Option::<u32>::deserialize(deserializer)? {
+        Some(0) => Err(de::Error::custom("0 is not allowed; give a whole number above 0")),
+        substeps => Ok(substeps),
+    }
+}

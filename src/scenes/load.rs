@@ -1,0 +1,255 @@
+//! Reading a scene with all of its creatures, and checking that they fit together, before anything in a world changes.
+
+use std::{
+    collections::{BTreeSet, HashMap},
+    path::PathBuf,
+    sync::Arc,
+};
+
+use bevy::math::DVec3;
+
+use super::{Camera, Placement, Props, SceneClock, SceneFile, parameters, spawn};
+use crate::{
+    body::{BodyError, Ground, LEAST_REST_FRACTION, Muscles},
+    creatures::{
+        Body, Creature, FileError, MOST_PARTICLES, Pose,
+        library::{self, CREATURE, SCENE, Source},
+        parse,
+    },
+    mechanics::integrators::Method,
+};
+
+/// A scene with its creatures, read and found to be good.
+#[derive(Clone, Debug)]
+pub struct LoadedScene {
+    /// The scene.
+    pub file: SceneFile,
+    /// Where it came from.
+    pub source: Source,
+    /// What is allowed but probably not meant, for people.
+    pub warnings: Vec<String>,
+    /// The blueprint of each creature, in the order of the scene, and where it came from.
+    pub(super) creatures: Vec<(Source, Arc<Creature>)>,
+}
+
+impl LoadedScene {
+    /// The files on disk that it was read from.
+    pub fn files(&self) -> BTreeSet<PathBuf> {
+        let sources = self.creatures.iter().map(|(source, _)| source).chain([&self.source]);
+        sources
+            .filter_map(|source| match source {
+                Source::Disk(path) => Some(path.clone()),
+                Source::Shipped(_) => None,
+            })
+            .collect()
+    }
+
+    /// Builds the bodies in the order of the scene.
+    pub(super) fn bodies(&self) -> impl Iterator<Item = Result<Body, FileError>> + '_ {
+        self.file.creatures.iter().zip(&self.creatures).map(|(placement, (source, creature))| {
+            let pose = Pose { at: DVec3::from(placement.at), heading: placement.heading };
+            creature.body(pose).map_err(|error| conflict(source, error))
+        })
+    }
+}
+
+/// Reads a scene or, where the name is that of a creature, the creature alone.
+///
+/// The name is a path or a name: looked for as given, then under `./assets`, then among what is shipped.
+///
+/// # Errors
+/// If a file is missing or bad; see [`FileError`].
+pub fn load(name: &str) -> Result<LoadedScene, FileError> {
+    if name.ends_with(CREATURE.suffix) {
+        return load_creature(name);
+    }
+    let source = match library::find(SCENE, name, None) {
+        Err(error @ FileError::NotFound { .. }) => {
+            return if library::find(CREATURE, name, None).is_ok() { load_creature(name) } else { Err(error) };
+        }
+        source => source?,
+    };
+    let file = read_scene(&source)?;
+    let mut read = HashMap::new();
+    let mut creatures = Vec::with_capacity(file.creatures.len());
+    for placement in &file.creatures {
+        if !read.contains_key(&placement.creature) {
+            let found = library::find(CREATURE, &placement.creature, source.folder())?;
+            let creature = Arc::new(library::read_creature(&found)?);
+            read.insert(placement.creature.clone(), (found, creature));
+        }
+        creatures.push(read[&placement.creature].clone());
+    }
+    check(LoadedScene { file, source, warnings: Vec::new(), creatures })
+}
+
+/// Reads a scene file by itself, without its creatures.
+///
+/// # Errors
+/// If it is missing or bad; see [`FileError`].
+pub fn read_scene(source: &Source) -> Result<SceneFile, FileError> {
+    parse(&library::read(SCENE, source)?, &source.to_string())
+}
+
+/// Reads a creature and makes a scene for it alone: on the ground and under the gravity that it asks for, looked at from nearby.
+///
+/// # Errors
+/// If its file is missing or bad; see [`FileError`].
+pub fn load_creature(name: &str) -> Result<LoadedScene, FileError> {
+    let source = library::find(CREATURE, name, None)?;
+    let creature = Arc::new(library::read_creature(&source)?);
+    let stem = source.stem();
+    let file = SceneFile {
+        version: 1,
+        title: stem.clone(),
+        gravity: creature.gravity.unwrap_or(0.0),
+        ground: creature.ground,
+        creatures: vec![Placement {
+            name: usable_name(&stem),
+            creature: reference(&source),
+            at: (0.0, 0.0, 0.0),
+            heading: 0.0,
+        }],
+        props: Props::None,
+        camera: Camera::default(),
+        clock: SceneClock::default(),
+        method: Method::default(),
+        budget: super::Budget::default(),
+        set: Default::default(),
+    };
+    check(LoadedScene { file, source: source.clone(), warnings: Vec::new(), creatures: vec![(source, creature)] })
+}
+
+/// How a scene file refers to a creature file wherever the scene file is.
+pub(super) fn reference(source: &Source) -> String {
+    match source {
+        Source::Disk(path) => std::path::absolute(path).unwrap_or_else(|_| path.clone()).display().to_string(),
+        Source::Shipped(_) => source.stem(),
+    }
+}
+
+/// Checks what single files cannot know, and that the scene can be opened.
+fn check(mut scene: LoadedScene) -> Result<LoadedScene, FileError> {
+    check_names(&scene)?;
+    let particles: usize = scene.creatures.iter().map(|(_, creature)| creature.particle_count()).sum();
+    if particles > MOST_PARTICLES {
+        return Err(scene_conflict(
+            &scene,
+            "creatures".into(),
+            format!("have {particles} particles together; a scene has at most {MOST_PARTICLES}"),
+        ));
+    }
+    let mut warned = BTreeSet::new();
+    let mut warnings = Vec::new();
+    for (i, body) in scene.bodies().enumerate() {
+        let body = body?;
+        if scene.file.ground == Some(Ground::Flat) {
+            check_above_ground(&scene, i, &body)?;
+        }
+        if let Some(muscles) = &body.muscles
+            && warned.insert(&scene.creatures[i].0)
+        {
+            warnings.extend(wide_waves(muscles).map(|text| format!("{}: {text}", scene.creatures[i].0)));
+        }
+    }
+    scene.warnings = warnings;
+    check_set(&scene)?;
+    Ok(scene)
+}
+
+fn check_names(scene: &LoadedScene) -> Result<(), FileError> {
+    let mut first = HashMap::new();
+    for (i, placement) in scene.file.creatures.iter().enumerate() {
+        let name = &placement.name;
+        let problem = if *name != usable_name(name) {
+            format!("`{}` cannot be a name; `{}` can", name.escape_debug(), usable_name(name))
+        } else if let Some(other) = first.insert(name, i) {
+            format!("`{name}` is the name of creatures[{other}] already; give each creature a name of its own")
+        } else {
+            continue;
+        };
+        return Err(scene_conflict(scene, format!("creatures[{i}].name"), problem));
+    }
+    Ok(())
+}
+
+/// A name that can stand in a parameter path and in a column of a table.
+fn usable_name(name: &str) -> String {
+    let name: String =
+        name.trim().chars().map(|c| if c.is_control() || "[]=,\"".contains(c) { '-' } else { c }).collect();
+    match name.as_str() {
+        "" => "creature".into(),
+        // `clock.dt` is a path already.
+        "clock" => "clock-".into(),
+        _ => name,
+    }
+}
+
+fn check_above_ground(scene: &LoadedScene, creature: usize, body: &Body) -> Result<(), FileError> {
+    // What a turn or a sum rounds off is no mistake.
+    const ROUNDING: f64 = 1e-9;
+    let Some((i, lowest)) = (0..).zip(body.particles.positions()).min_by(|a: &(usize, _), b| a.1.y.total_cmp(&b.1.y))
+    else {
+        return Ok(());
+    };
+    if lowest.y >= -ROUNDING {
+        return Ok(());
+    }
+    let (x, y, z) = scene.file.creatures[creature].at;
+    let depth = -lowest.y;
+    Err(if scene.source == scene.creatures[creature].0 {
+        scene_conflict(
+            scene,
+            format!("particles[{i}].position"),
+            format!("is {depth} below the ground; lift the creature by that much, or give ground: None"),
+        )
+    } else {
+        scene_conflict(
+            scene,
+            format!("creatures[{creature}].at"),
+            format!(
+                "puts particle {i} of `{}` {depth} below the ground; give at: ({x}, {}, {z}) or higher, or ground: None",
+                scene.file.creatures[creature].name,
+                y + depth
+            ),
+        )
+    })
+}
+
+fn wide_waves(muscles: &Muscles) -> impl Iterator<Item = String> + '_ {
+    let most = 1.0 - LEAST_REST_FRACTION;
+    muscles.iter().filter(move |muscle| muscle.amplitude > most).map(move |muscle| {
+        format!(
+            "springs[{}].muscle.amplitude: {} is above {most}; the rest length never falls below {LEAST_REST_FRACTION} \
+             of its length, so the wave is cut",
+            muscle.spring.0, muscle.amplitude
+        )
+    })
+}
+
+/// Sets the scene's parameters in a world of their own, to see whether they can be set.
+fn check_set(scene: &LoadedScene) -> Result<(), FileError> {
+    if scene.file.set.is_empty() {
+        return Ok(());
+    }
+    let mut world = spawn::scratch(scene)?;
+    for (path, &value) in &scene.file.set {
+        parameters::set(&mut world, path, value)
+            .map_err(|error| scene_conflict(scene, "set".into(), error.to_string()))?;
+    }
+    Ok(())
+}
+
+fn scene_conflict(scene: &LoadedScene, path: String, problem: String) -> FileError {
+    FileError::Conflict { file: scene.source.to_string(), path, problem }
+}
+
+/// What a body refuses, with the name of its file.
+fn conflict(source: &Source, error: BodyError) -> FileError {
+    let file = source.to_string();
+    let text = error.to_string();
+    match text.split_once(": ") {
+        Some((path, problem)) => FileError::Conflict { file, path: path.into(), problem: problem.into() },
+        None => FileError::Unreadable { file, problem: text },
+    }
+}

@@ -1,0 +1,309 @@
+//! What can be set: how each quantity is read, checked and written.
+
+use bevy::{ecs::world::EntityRef, prelude::*};
+
+use super::{Kind, Parameter};
+use crate::{
+    body::{
+        BodyError, Gravity, Muscle, Muscles, Particle, ParticleId, Particles, Requirement, SpineFriction, Spring,
+        SpringId, Springs,
+    },
+    physics::Clock,
+};
+
+/// The component that a quantity belongs to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Group {
+    Clock,
+    Springs,
+    Particles,
+    Muscles,
+    Friction,
+    Gravity,
+}
+
+impl Group {
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Clock => "clock",
+            Self::Springs => "springs",
+            Self::Particles => "particles",
+            Self::Muscles => "muscles",
+            Self::Friction => "friction",
+            Self::Gravity => "gravity",
+        }
+    }
+
+    /// Whether its elements are counted.
+    pub(super) fn is_indexed(self) -> bool {
+        matches!(self, Self::Springs | Self::Particles | Self::Muscles)
+    }
+
+    /// Takes the group off the front of the part of a path behind the body's name.
+    pub(super) fn parse(path: &str) -> (Option<Self>, &str) {
+        let end = path.find(['.', '[']).unwrap_or(path.len());
+        let all = [Self::Springs, Self::Particles, Self::Muscles, Self::Friction, Self::Gravity];
+        (all.into_iter().find(|group| group.name() == &path[..end]), &path[end..])
+    }
+}
+
+/// A number that can be set.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) enum Quantity {
+    Dt,
+    TimeScale,
+    Stiffness,
+    Damping,
+    RestLength,
+    Mass,
+    Amplitude,
+    Period,
+    Phase,
+    Ramp,
+    Drag,
+    Grip,
+    Ratchet,
+    Gravity,
+}
+
+/// What is said about a quantity: group, field, what it must be, the usual range, unit and help.
+type Facts = (Group, &'static str, Requirement, (f64, f64), &'static str, &'static str);
+
+impl Quantity {
+    pub(super) const OF_BODIES: [Self; 12] = [
+        Self::Stiffness,
+        Self::Damping,
+        Self::RestLength,
+        Self::Mass,
+        Self::Amplitude,
+        Self::Period,
+        Self::Phase,
+        Self::Ramp,
+        Self::Drag,
+        Self::Grip,
+        Self::Ratchet,
+        Self::Gravity,
+    ];
+
+    fn facts(self) -> Facts {
+        use Requirement::{Finite, NonNegative, Positive};
+        const SPRINGS: Group = Group::Springs;
+        const MUSCLES: Group = Group::Muscles;
+        const FRICTION: Group = Group::Friction;
+        match self {
+            Self::Dt => (Group::Clock, "dt", Positive, (0.0001, 1.0), "time", "step of the integration, dt"),
+            Self::TimeScale => (
+                Group::Clock,
+                "time_scale",
+                NonNegative,
+                (0.0, 30.0),
+                "time/s",
+                "simulated time that passes in a second",
+            ),
+            Self::Stiffness => (SPRINGS, "stiffness", NonNegative, (0.0, 10.0), "force/length", "spring stiffness k"),
+            Self::Damping => (SPRINGS, "damping", NonNegative, (0.0, 10.0), "force·time/length", "spring damping D"),
+            Self::RestLength => {
+                (SPRINGS, "rest_length", Positive, (0.1, 4.0), "length", "rest length L without its muscle")
+            }
+            Self::Mass => (Group::Particles, "mass", Positive, (0.1, 10.0), "mass", "mass of a particle"),
+            Self::Amplitude => (
+                MUSCLES,
+                "amplitude",
+                NonNegative,
+                (0.0, 0.8),
+                "of L",
+                "how far a muscle drives the rest length, as a fraction of L",
+            ),
+            Self::Period => (MUSCLES, "period", Positive, (0.5, 30.0), "time", "time of one cycle of the wave"),
+            Self::Phase => (MUSCLES, "phase", Finite, (-1.0, 1.0), "cycles", "lag of the wave; positive is later"),
+            Self::Ramp => {
+                (MUSCLES, "ramp", NonNegative, (0.0, 5.0), "cycles", "cycles over which the amplitude grows from 0")
+            }
+            Self::Drag => {
+                (FRICTION, "drag", NonNegative, (0.0, 5.0), "1/time", "rate at which forward sliding dies away")
+            }
+            Self::Grip => {
+                (FRICTION, "grip", NonNegative, (0.0, 20.0), "1/time", "rate at which sideways sliding dies away")
+            }
+            Self::Ratchet => (
+                FRICTION,
+                "ratchet",
+                NonNegative,
+                (0.0, 1.0),
+                "0 or 1",
+                "scales let nothing slide back along the spine",
+            ),
+            Self::Gravity => {
+                (Group::Gravity, "gravity", NonNegative, (0.0, 1.0), "length/time²", "acceleration towards the ground")
+            }
+        }
+    }
+
+    pub(super) fn group(self) -> Group {
+        self.facts().0
+    }
+
+    pub(super) fn field(self) -> &'static str {
+        self.facts().1
+    }
+
+    /// The field as it follows the group in a path; gravity is its own group.
+    pub(super) fn field_in_path(self) -> &'static str {
+        if self == Self::Gravity { "" } else { self.field() }
+    }
+
+    pub(super) fn path(self, body: &str, index: Option<usize>) -> String {
+        let (group, field) = (self.group().name(), self.field_in_path());
+        match index {
+            _ if field.is_empty() => format!("{body}.{group}"),
+            None => format!("{body}.{group}.{field}"),
+            Some(index) => format!("{body}.{group}[{index}].{field}"),
+        }
+    }
+
+    pub(super) fn parameter(self, path: String, value: f64) -> Parameter {
+        let (_, _, _, (least, most), unit, help) = self.facts();
+        // A value beyond the usual range gets a slider up to the next power of ten.
+        let widen = |value: f64| libm::pow(10.0, libm::ceil(libm::log10(value)));
+        let most = if value > most { widen(value) } else { most };
+        let least = if value < -1.0 && value < least { -widen(-value) } else { least.min(value) };
+        let kind = if self == Self::Ratchet { Kind::Toggle } else { Kind::Number };
+        Parameter { path, value, range: least..=most, unit, help, kind }
+    }
+
+    pub(super) fn admits(self, value: f64) -> bool {
+        self.facts().2.admits(value)
+            && match self {
+                Self::Ratchet => value == 0.0 || value == 1.0,
+                Self::TimeScale => value <= Clock::LARGEST_TIME_SCALE,
+                _ => true,
+            }
+    }
+
+    /// What a value must be, in words.
+    pub(super) fn requirement(self) -> String {
+        match self {
+            Self::Ratchet => "0 (off) or 1 (on)".into(),
+            Self::TimeScale => format!("a number from 0 to {}", Clock::LARGEST_TIME_SCALE),
+            _ => self.facts().2.to_string(),
+        }
+    }
+
+    /// How many of it a body has.
+    pub(super) fn count(self, body: EntityRef) -> usize {
+        match self.group() {
+            Group::Clock => 0,
+            Group::Springs => body.get::<Springs>().map_or(0, Springs::len),
+            Group::Particles => body.get::<Particles>().map_or(0, Particles::len),
+            Group::Muscles => body.get::<Muscles>().map_or(0, Muscles::len),
+            Group::Friction => usize::from(body.contains::<SpineFriction>()),
+            Group::Gravity => usize::from(body.contains::<Particles>()),
+        }
+    }
+
+    /// The values of a body, one an element; none where the body has no such thing.
+    pub(super) fn read(self, body: EntityRef) -> Vec<f64> {
+        match self.group() {
+            Group::Clock => Vec::new(),
+            Group::Springs => body
+                .get::<Springs>()
+                .map(|springs| springs.iter().map(|mut spring| *self.of_spring(&mut spring)).collect())
+                .unwrap_or_default(),
+            Group::Particles => {
+                body.get::<Particles>().map(|particles| particles.masses().to_vec()).unwrap_or_default()
+            }
+            Group::Muscles => body
+                .get::<Muscles>()
+                .map(|muscles| muscles.iter().map(|mut muscle| *self.of_muscle(&mut muscle)).collect())
+                .unwrap_or_default(),
+            Group::Friction => {
+                body.get::<SpineFriction>().map(|friction| self.of_friction(friction)).into_iter().collect()
+            }
+            Group::Gravity => vec![body.get::<Gravity>().map_or(0.0, |gravity| gravity.acceleration())],
+        }
+    }
+
+    /// Writes the value to one element of a body or to all, touching only what changes. `time` is when.
+    pub(super) fn write(
+        self,
+        mut body: EntityWorldMut,
+        index: Option<usize>,
+        value: f64,
+        time: f64,
+    ) -> Result<(), BodyError> {
+        let values = self.read(body.as_readonly());
+        let changed = (0..values.len()).filter(|&i| index.is_none_or(|index| index == i) && values[i] != value);
+        for i in changed {
+            // Counts come from vectors that are indexed by u32.
+            let id = i as u32;
+            match self.group() {
+                Group::Clock => {}
+                Group::Springs => {
+                    if let Some(mut springs) = body.get_mut::<Springs>()
+                        && let Some(mut spring) = springs.get(SpringId(id))
+                    {
+                        *self.of_spring(&mut spring) = value;
+                        springs.set(SpringId(id), spring)?;
+                    }
+                }
+                Group::Particles => {
+                    if let Some(mut particles) = body.get_mut::<Particles>()
+                        && let Some(particle) = particles.get(ParticleId(id))
+                    {
+                        particles.set(ParticleId(id), Particle { mass: value, ..particle })?;
+                    }
+                }
+                Group::Muscles => {
+                    if let Some(mut muscles) = body.get_mut::<Muscles>()
+                        && let Some(mut muscle) = muscles.get(i)
+                    {
+                        *self.of_muscle(&mut muscle) = value;
+                        muscles.set(i, muscle, time)?;
+                    }
+                }
+                Group::Friction => {
+                    if let Some(mut friction) = body.get_mut::<SpineFriction>() {
+                        *friction = self.with_friction(friction.clone(), value)?;
+                    }
+                }
+                Group::Gravity => {
+                    body.insert(Gravity::new(value)?);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn of_spring(self, spring: &mut Spring) -> &mut f64 {
+        match self {
+            Self::Damping => &mut spring.damping,
+            Self::RestLength => &mut spring.rest_length,
+            _ => &mut spring.stiffness,
+        }
+    }
+
+    fn of_muscle(self, muscle: &mut Muscle) -> &mut f64 {
+        match self {
+            Self::Period => &mut muscle.period,
+            Self::Phase => &mut muscle.phase,
+            Self::Ramp => &mut muscle.ramp,
+            _ => &mut muscle.amplitude,
+        }
+    }
+
+    fn of_friction(self, friction: &SpineFriction) -> f64 {
+        match self {
+            Self::Grip => friction.grip(),
+            Self::Ratchet => f64::from(u8::from(friction.ratchet())),
+            _ => friction.drag(),
+        }
+    }
+
+    fn with_friction(self, friction: SpineFriction, value: f64) -> Result<SpineFriction, BodyError> {
+        match self {
+            Self::Grip => friction.with_grip(value),
+            Self::Ratchet => Ok(friction.with_ratchet(value != 0.0)),
+            _ => friction.with_drag(value),
+        }
+    }
+}

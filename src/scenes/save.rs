@@ -1,0 +1,95 @@
+//! Saving the scene that is open as a file of the user's own.
+
+use std::{fs, io::Write, path::Path};
+
+use bevy::prelude::*;
+use ron::ser::PrettyConfig;
+
+use super::{
+    FileError, LoadedScene, SceneFile, StepSize,
+    load::reference,
+    parameters,
+    spawn::{Opened, scratch},
+};
+use crate::{
+    creatures::{
+        library::{self, CREATURE, Source},
+        options,
+    },
+    physics::Clock,
+};
+
+/// Saves the scene that is open, with every parameter, its clock and its method as they are now, so that loading the file gives the
+/// same again.
+///
+/// Parameters that differ from those of the creature files stand under `set`. Writing is atomic: whatever happens, `path` holds what it
+/// held before or all of the new, and nothing else is left in its folder. A scene has one method: that of its first body.
+///
+/// # Errors
+/// If no scene is open or the file cannot be written.
+pub fn save(world: &mut World, path: &Path) -> Result<(), FileError> {
+    let fail = |problem: String| FileError::Unwritable { file: path.display().to_string(), problem };
+    let Some(Opened(scene)) = world.get_resource::<Opened>() else {
+        return Err(fail("no scene is open".into()));
+    };
+    let scene = scene.clone();
+    let file = current(world, &scene, path)?;
+    let text = options().to_string_pretty(&file, PrettyConfig::new()).map_err(|error| fail(error.to_string()))?;
+    write(path, format!("Scene{text}\n").as_bytes()).map_err(|error| fail(error.to_string()))
+}
+
+/// The scene's file as it would have to be, at `path`, to give what is now.
+fn current(world: &mut World, scene: &LoadedScene, path: &Path) -> Result<SceneFile, FileError> {
+    let mut file = scene.file.clone();
+    let base = parameters::body_values(&mut scratch(scene)?);
+    let now = parameters::body_values(world);
+    file.set = parameters::changes(base, now);
+    file.method = parameters::method(world);
+    if let Some(clock) = world.get_resource::<Clock>() {
+        let scale = clock.time_scale().unwrap_or(file.clock.time_scale);
+        if clock.dt() != file.clock.dt() || scale != file.clock.time_scale {
+            file.clock.step = StepSize::Dt(clock.dt());
+            file.clock.time_scale = scale;
+        }
+    }
+    for (placement, (source, _)) in file.creatures.iter_mut().zip(&scene.creatures) {
+        if library::find(CREATURE, &placement.creature, path.parent()).as_ref() != Ok(source) {
+            placement.creature = portable(source, path);
+        }
+    }
+    Ok(file)
+}
+
+/// How a scene file at `path` refers to a creature: by its name alone if that lies beside it.
+fn portable(source: &Source, path: &Path) -> String {
+    let absolute = |path: &Path| std::path::absolute(path).ok();
+    match source {
+        Source::Disk(creature)
+            if creature.parent().and_then(absolute) == path.parent().and_then(absolute)
+                && let Some(name) = creature.file_name().and_then(|name| name.to_str()) =>
+        {
+            name.to_owned()
+        }
+        _ => reference(source),
+    }
+}
+
+/// Replaces the file at `path` in one step: written in full beside it, flushed to the disk, then renamed.
+fn write(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
+    if path.is_dir() {
+        return Err(std::io::Error::other("it is a folder; give the name of a file"));
+    }
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let mut file = tempfile::Builder::new().prefix(".wriggle-").suffix(".part").tempfile_in(folder)?;
+    file.write_all(bytes)?;
+    if let Ok(old) = fs::metadata(path) {
+        file.as_file().set_permissions(old.permissions())?;
+    }
+    file.as_file().sync_all()?;
+    file.persist(path).map_err(|error| error.error)?;
+    // The rename itself is on the disk once its folder is; not every system can flush a folder.
+    if let Ok(folder) = fs::File::open(folder) {
+        folder.sync_all().ok();
+    }
+    Ok(())
+}

@@ -1,0 +1,130 @@
+//! The camera: orbit, pan, zoom, and following the worm.
+
+use bevy::prelude::*;
+use bevy_panorbit_camera::{PanOrbitCamera, PanOrbitCameraPlugin, PanOrbitCameraSystemSet, TrackpadBehavior};
+
+use super::offscreen::OffscreenTarget;
+use super::quality::Quality;
+use crate::{
+    creatures::Look,
+    physics::Shown,
+    scenes::{Camera as Place, CurrentScene},
+};
+
+/// Whether the pointer is used by a panel: while true, it does not move the camera. Written by whoever draws panels, before
+/// [`PostUpdate`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect, Resource)]
+#[reflect(Resource)]
+pub struct PointerOnPanel(pub bool);
+
+/// The camera that shows the scene.
+#[derive(Clone, Component, Copy, Debug, Default, Reflect)]
+#[reflect(Component)]
+pub struct SceneCamera;
+
+/// Whether the camera follows the first body of the scene; key `C`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect, Resource)]
+#[reflect(Resource)]
+pub struct FollowWorm(pub bool);
+
+/// How near the camera comes when it begins to follow.
+const NEAR: f32 = 6.5;
+/// How quickly the camera follows: the part of the way it makes in a second is 1 − e^−this.
+const QUICKNESS: f32 = 3.5;
+
+pub(super) fn plugin(app: &mut App) {
+    app.add_plugins(PanOrbitCameraPlugin)
+        .init_resource::<PointerOnPanel>()
+        .init_resource::<FollowWorm>()
+        .add_systems(Startup, spawn)
+        .add_systems(Update, (take_place.run_if(resource_exists_and_changed::<CurrentScene>), toggle).chain())
+        .add_systems(PostUpdate, (leave_to_panel, follow).chain().before(PanOrbitCameraSystemSet));
+}
+
+fn spawn(quality: Res<Quality>, target: Option<Res<OffscreenTarget>>, mut commands: Commands) {
+    let mut camera = commands.spawn((
+        SceneCamera,
+        Camera3d::default(),
+        quality.msaa(),
+        bevy::core_pipeline::tonemapping::Tonemapping::None,
+        Projection::from(PerspectiveProjection { fov: 38_f32.to_radians(), near: 0.1, far: 400.0, ..default() }),
+        PanOrbitCamera {
+            pitch_lower_limit: Some(0.03),
+            pitch_upper_limit: Some(1.5),
+            zoom_lower_limit: 1.5,
+            zoom_upper_limit: Some(45.0),
+            orbit_smoothness: 0.25,
+            zoom_smoothness: 0.25,
+            trackpad_behavior: TrackpadBehavior::blender_default(),
+            use_real_time: true,
+            ..default()
+        },
+    ));
+    if let Some(target) = target {
+        camera.insert(target.0.clone());
+    }
+}
+
+/// Where a scene wants the camera: the point that it looks at, yaw and pitch in radians, and its distance.
+fn place(scene: &CurrentScene) -> (Vec3, f32, f32, f32) {
+    let Place::Orbit { target: (x, y, z), distance, pitch, yaw } = scene.file.camera;
+    let target = Vec3::new(x as f32, y as f32, z as f32);
+    (target, yaw.to_radians() as f32, pitch.to_radians() as f32, distance as f32)
+}
+
+/// Goes where the scene wants it, at once.
+fn take_place(scene: Res<CurrentScene>, mut cameras: Query<(&mut PanOrbitCamera, &mut Transform), With<SceneCamera>>) {
+    let (focus, yaw, pitch, radius) = place(&scene);
+    for (mut orbit, mut transform) in &mut cameras {
+        (orbit.focus, orbit.target_focus) = (focus, focus);
+        (orbit.yaw, orbit.target_yaw) = (Some(yaw), yaw);
+        (orbit.pitch, orbit.target_pitch) = (Some(pitch), pitch);
+        (orbit.radius, orbit.target_radius) = (Some(radius), radius);
+        orbit.force_update = true;
+        let turn = Quat::from_rotation_y(yaw) * Quat::from_rotation_x(-pitch);
+        *transform = Transform::from_translation(focus + turn * Vec3::Z * radius).with_rotation(turn);
+    }
+}
+
+fn toggle(
+    keys: Res<ButtonInput<KeyCode>>,
+    scene: Option<Res<CurrentScene>>,
+    mut following: ResMut<FollowWorm>,
+    mut cameras: Query<&mut PanOrbitCamera, With<SceneCamera>>,
+) {
+    if !keys.just_pressed(KeyCode::KeyC) {
+        return;
+    }
+    following.0 = !following.0;
+    for mut orbit in &mut cameras {
+        if following.0 {
+            orbit.target_radius = orbit.target_radius.min(NEAR);
+        } else if let Some(scene) = &scene {
+            let (focus, _, _, radius) = place(scene);
+            (orbit.target_focus, orbit.target_radius) = (focus, radius);
+        }
+    }
+}
+
+fn leave_to_panel(on_panel: Res<PointerOnPanel>, mut cameras: Query<&mut PanOrbitCamera, With<SceneCamera>>) {
+    for mut orbit in &mut cameras {
+        orbit.enabled = !on_panel.0;
+    }
+}
+
+/// Draws the camera's focus towards the middle of the first body.
+fn follow(
+    time: Res<Time<Real>>,
+    following: Res<FollowWorm>,
+    bodies: Query<&Shown, With<Look>>,
+    mut cameras: Query<&mut PanOrbitCamera, With<SceneCamera>>,
+) {
+    let Some(shown) = bodies.iter().next().filter(|_| following.0) else { return };
+    let count = shown.positions().len().max(1) as f32;
+    let middle = shown.positions().iter().sum::<Vec3>() / count + Vec3::Y * 0.4;
+    let part = 1.0 - (-QUICKNESS * time.delta_secs()).exp();
+    for mut orbit in &mut cameras {
+        orbit.target_focus = orbit.target_focus.lerp(middle, part);
+        orbit.force_update = true;
+    }
+}

@@ -1,0 +1,113 @@
+// The one material of the garden: vertex colours under a warm sun and a blue sky. The fourth number of a vertex colour is how far the
+// wind moves the vertex. Cheap enough for a renderer without a GPU; the tone curve is applied here so that both qualities look alike.
+
+#import bevy_pbr::{
+    forward_io::{Vertex, VertexOutput},
+    mesh_functions,
+    mesh_view_bindings::{globals, lights, view},
+    view_transformations::position_world_to_clip,
+}
+#ifdef SHADOWS
+#import bevy_pbr::shadows::fetch_directional_shadow
+#endif
+
+struct Paint {
+    tint: vec4<f32>,
+    // x: gloss, y: light shining through, z: 1 where the colour glows by itself, w: how much fog it takes
+    finish: vec4<f32>,
+    // x..y along the x axis is open to the light; beyond, it is dark within z (burrow and house). Off where z is 0.
+    shelter: vec4<f32>,
+}
+
+@group(#{MATERIAL_BIND_GROUP}) @binding(0) var<uniform> paint: Paint;
+
+const SUN: vec3<f32> = vec3(2.25, 1.92, 1.45);
+const SKY: vec3<f32> = vec3(0.36, 0.50, 0.72);
+const BOUNCE: vec3<f32> = vec3(0.24, 0.25, 0.13);
+const HAZE: vec3<f32> = vec3(0.68, 0.82, 0.90);
+
+@vertex
+fn vertex(in: Vertex) -> VertexOutput {
+    var out: VertexOutput;
+    let world_from_local = mesh_functions::get_world_from_local(in.instance_index);
+    var world = mesh_functions::mesh_position_local_to_world(world_from_local, vec4(in.position, 1.0));
+#ifndef SHEER
+    let reach = in.color.a;
+    if (reach > 0.0) {
+        // A slow gust that travels over the field, and a quick flutter on top of it.
+        let t = globals.time;
+        let gust = sin(world.x * 0.45 + world.z * 0.3 - t * 1.1) * 0.6 + 0.4;
+        let flutter = sin(t * 3.7 + world.x * 3.1 + world.z * 2.3);
+        let push = gust + 0.28 * flutter;
+        world.x += reach * push;
+        world.z += reach * (0.35 * gust - 0.3 * flutter);
+        world.y -= reach * 0.3 * push * push;
+    }
+#endif
+    out.world_position = world;
+    out.position = position_world_to_clip(world.xyz);
+    out.world_normal = mesh_functions::mesh_normal_local_to_world(in.normal, in.instance_index);
+    out.color = in.color;
+#ifdef VERTEX_OUTPUT_INSTANCE_INDEX
+    out.instance_index = in.instance_index;
+#endif
+#ifdef VISIBILITY_RANGE_DITHER
+    out.visibility_range_dither = mesh_functions::get_visibility_range_dither_level(in.instance_index, world_from_local[3]);
+#endif
+    return out;
+}
+
+// A gentle film curve: keeps colours friendly, rolls highlights off.
+fn tone(x: vec3<f32>) -> vec3<f32> {
+    let y = x * 0.92;
+    let mapped = (y * (2.51 * y + 0.03)) / (y * (2.43 * y + 0.59) + 0.14);
+    let grey = dot(mapped, vec3(0.2126, 0.7152, 0.0722));
+    return clamp(mix(vec3(grey), mapped, 1.08), vec3(0.0), vec3(1.0));
+}
+
+@fragment
+fn fragment(in: VertexOutput, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
+    let albedo = in.color.rgb * paint.tint.rgb;
+    let to_eye = view.world_position - in.world_position.xyz;
+    let distance = length(to_eye);
+    var color = albedo;
+    if (paint.finish.z < 0.5) {
+        let eye = to_eye / distance;
+        var normal = normalize(in.world_normal);
+        // Leaves and blades are seen from both sides; their normals point up and stay.
+        if (!front && paint.finish.y == 0.0) {
+            normal = -normal;
+        }
+        let to_sun = lights.directional_lights[0].direction_to_light;
+        let facing = dot(normal, to_sun);
+        var sunlight = mix(max(facing, 0.0), abs(facing) * 0.5 + 0.5 * max(facing, 0.0), paint.finish.y);
+#ifdef SHADOWS
+        if (sunlight > 0.0) {
+            let view_z = dot(vec4(
+                view.view_from_world[0].z, view.view_from_world[1].z, view.view_from_world[2].z, view.view_from_world[3].z),
+                in.world_position);
+            sunlight *= fetch_directional_shadow(0u, in.world_position, normal, view_z, in.position.xy);
+        }
+#endif
+        let up = normal.y * 0.5 + 0.5;
+        var light = mix(BOUNCE, SKY, up) + SUN * sunlight;
+        let half_way = normalize(eye + to_sun);
+        let shine = pow(max(dot(normal, half_way), 0.0), 40.0) * paint.finish.x * sunlight;
+        let rim = pow(1.0 - max(dot(normal, eye), 0.0), 3.0) * paint.finish.x * 0.35;
+        color = albedo * light + SUN * shine * 0.35 + SKY * rim;
+        if (paint.shelter.z > 0.0) {
+            let x = in.world_position.x;
+            let inside = (1.0 - smoothstep(paint.shelter.x - 0.7, paint.shelter.x, x))
+                + smoothstep(paint.shelter.y, paint.shelter.y + 0.7, x);
+            let near = step(abs(in.world_position.z), paint.shelter.z);
+            color *= 1.0 - 0.97 * min(inside, 1.0) * near;
+        }
+    }
+    let fog = (1.0 - exp(-max(distance - 14.0, 0.0) * 0.0085)) * paint.finish.w;
+    let shown = tone(mix(color, HAZE, fog));
+#ifdef SHEER
+    return vec4(shown, in.color.a * paint.tint.a);
+#else
+    return vec4(shown, 1.0);
+#endif
+}

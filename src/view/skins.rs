@@ -1,0 +1,88 @@
+//! Gives every body the skin of its [`Look`], and takes it away with the body.
+
+use bevy::{ecs::entity::EntityHashMap, prelude::*};
+
+use super::{paint::Paint, plain, quality::Quality, worm};
+use crate::{
+    body::Springs,
+    creatures::Look,
+    physics::{PhysicsSystems, Shown},
+    scenes::{CurrentScene, Props, garden},
+};
+
+pub(super) fn plugin(app: &mut App) {
+    app.init_resource::<Skins>().add_systems(
+        RunFixedMainLoop,
+        (dress, worm::follow, plain::follow)
+            .chain()
+            .after(PhysicsSystems::Sync)
+            .in_set(RunFixedMainLoopSystems::AfterFixedMainLoop),
+    );
+}
+
+/// The body that an entity belongs to the skin of.
+#[derive(Clone, Component, Copy, Debug)]
+pub(super) struct SkinOf(pub Entity);
+
+/// The skins that bodies wear: root entity, look, and how many particles and springs it was cut for.
+#[derive(Default, Resource)]
+struct Skins(EntityHashMap<(Entity, Look, usize, usize)>);
+
+/// The materials of skins, made anew for every scene.
+struct Kits {
+    worm: worm::WormKit,
+    plain: plain::PlainKit,
+}
+
+type Bodies<'w, 's> = Query<'w, 's, (Entity, &'static Look, &'static Shown, Option<&'static Springs>)>;
+
+fn dress(
+    bodies: Bodies,
+    quality: Res<Quality>,
+    scene: Option<Res<CurrentScene>>,
+    mut skins: ResMut<Skins>,
+    mut kits: Local<Option<Kits>>,
+    mut meshes: ResMut<Assets<Mesh>>,
+    mut paints: ResMut<Assets<Paint>>,
+    mut commands: Commands,
+) {
+    if scene.as_ref().is_some_and(|scene| scene.is_changed()) {
+        *kits = None;
+        for (_, (root, ..)) in skins.0.drain() {
+            commands.entity(root).try_despawn();
+        }
+    }
+    skins.0.retain(|&body, &mut (root, look, particles, springs)| {
+        let stays = bodies.get(body).is_ok_and(|(_, now, shown, held)| {
+            (*now, shown.positions().len(), held.map_or(0, Springs::len)) == (look, particles, springs)
+        });
+        if !stays {
+            commands.entity(root).try_despawn();
+        }
+        stays
+    });
+    for (body, &look, shown, springs) in &bodies {
+        let (particles, held) = (shown.positions().len(), springs.map_or(0, Springs::len));
+        if particles == 0 || skins.0.contains_key(&body) {
+            continue;
+        }
+        let kits = kits.get_or_insert_with(|| {
+            let shadows = quality.shadows();
+            let in_garden = scene.as_ref().is_some_and(|scene| matches!(scene.file.props, Props::Garden { .. }));
+            let shelter = if in_garden {
+                Vec4::new(garden::BURROW_MOUTH as f32, garden::DOOR as f32 + 0.1, 1.2, 0.0)
+            } else {
+                Vec4::ZERO
+            };
+            Kits {
+                worm: worm::WormKit::new(&mut meshes, &mut paints, shadows, shelter),
+                plain: plain::PlainKit::new(&mut meshes, &mut paints, shadows),
+            }
+        });
+        let root = match look {
+            Look::GardenWorm if particles >= 2 => worm::dress(body, particles, &kits.worm, &mut commands),
+            Look::GardenWorm | Look::Plain => plain::dress(body, particles, springs, &kits.plain, &mut commands),
+        };
+        skins.0.insert(body, (root, look, particles, held));
+    }
+}

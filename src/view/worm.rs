@@ -1,0 +1,302 @@
+//! The garden worm's skin: an ellipsoid a particle, orange rings for its scales, and a face.
+
+use core::f32::consts::{PI, TAU};
+
+use bevy::{light::NotShadowCaster, prelude::*};
+
+use super::{
+    clay::{Clay, blend, tint},
+    paint::Paint,
+    skins::SkinOf,
+};
+use crate::{body::Springs, physics::Shown, scenes::SceneMember};
+
+/// The radius of an ellipsoid at rest, in rest lengths of the springs.
+const RADIUS: f32 = 0.37;
+/// Half the length of an ellipsoid at rest, in rest lengths: neighbours overlap, so that the body is of one piece.
+const HALF_LENGTH: f32 = 0.7;
+/// How much the worm is lifted off the path: it lies on gravel.
+const CLEARANCE: f32 = 0.03;
+/// Where on an ellipsoid rings sit, in half lengths from its middle.
+const RINGS: [f32; 3] = [-0.4, 0.0, 0.4];
+
+const SKIN: u32 = 0xf29a9a;
+const BELLY: u32 = 0xffd2bd;
+const RING: u32 = 0xff7a12;
+
+/// What the parts of a worm are made of; shared by all worms.
+pub(super) struct WormKit {
+    body: Handle<Mesh>,
+    ring: Handle<Mesh>,
+    eye: Handle<Mesh>,
+    mouth: Handle<Mesh>,
+    feeler: Handle<Mesh>,
+    blot: Handle<Mesh>,
+    skin: Handle<Paint>,
+    shadow: Handle<Paint>,
+}
+
+impl WormKit {
+    /// Shapes the parts. `shelter` is where the worm is in the dark, see [`Paint`].
+    pub fn new(meshes: &mut Assets<Mesh>, paints: &mut Assets<Paint>, shadows: bool, shelter: Vec4) -> Self {
+        Self {
+            body: meshes.add(body()),
+            ring: meshes.add(ring()),
+            eye: meshes.add(eye()),
+            mouth: meshes.add(mouth()),
+            feeler: meshes.add(feeler()),
+            blot: meshes.add(blot()),
+            skin: paints.add(Paint { shelter, ..Paint::glossy(shadows, 0.7) }),
+            shadow: paints.add(Paint::blot(if shadows { 0.5 } else { 1.0 })),
+        }
+    }
+}
+
+/// Which part of the worm an entity is.
+#[derive(Clone, Component, Copy, Debug)]
+pub(super) enum Part {
+    /// The ellipsoid of a particle.
+    Segment(usize),
+    /// A ring on the ellipsoid of a particle, so many half lengths before its middle.
+    Ring(usize, f32),
+    /// A ring between a particle and the next.
+    Joint(usize),
+    /// The face, on the last particle: the mouth, or something on the left (−1) or the right (1).
+    Mouth,
+    Eye(f32),
+    Feeler(f32),
+    /// The dark spot on the ground under a particle.
+    Blot(usize),
+}
+
+/// Spawns the skin of a worm of `count` particles.
+pub(super) fn dress(body: Entity, count: usize, kit: &WormKit, commands: &mut Commands) -> Entity {
+    let last = count - 1;
+    let mut parts = vec![Part::Mouth, Part::Eye(-1.0), Part::Eye(1.0), Part::Feeler(-1.0), Part::Feeler(1.0)];
+    for i in 0..count {
+        parts.extend([Part::Segment(i), Part::Blot(i)]);
+        // The face is left free.
+        parts.extend(RINGS.into_iter().filter(|at| i < last || *at < -0.1).map(|at| Part::Ring(i, at)));
+        if i < last {
+            parts.push(Part::Joint(i));
+        }
+    }
+    let root = commands.spawn((SceneMember, SkinOf(body), Transform::default(), Visibility::default())).id();
+    for part in parts {
+        let (mesh, paint) = match part {
+            Part::Segment(_) => (&kit.body, &kit.skin),
+            Part::Ring(..) | Part::Joint(_) => (&kit.ring, &kit.skin),
+            Part::Mouth => (&kit.mouth, &kit.skin),
+            Part::Eye(_) => (&kit.eye, &kit.skin),
+            Part::Feeler(_) => (&kit.feeler, &kit.skin),
+            Part::Blot(_) => (&kit.blot, &kit.shadow),
+        };
+        let mut part_of_it =
+            commands.spawn((part, SkinOf(body), Mesh3d(mesh.clone()), MeshMaterial3d(paint.clone()), ChildOf(root)));
+        if matches!(part, Part::Blot(_)) {
+            part_of_it.insert(NotShadowCaster);
+        }
+    }
+    root
+}
+
+/// One ellipsoid as it is shown: where, which way, how long and how thick.
+#[derive(Clone, Copy)]
+struct Segment {
+    middle: Vec3,
+    turn: Quat,
+    half_length: f32,
+    radius: f32,
+}
+
+impl Segment {
+    /// The ellipsoid of a particle. Its length follows the gaps to its neighbours, and its volume stays.
+    fn of(i: usize, positions: &[Vec3], rest: f32) -> Self {
+        let last = positions.len() - 1;
+        let (before, after) = (positions[i.saturating_sub(1)], positions[(i + 1).min(last)]);
+        let gaps = (after - positions[i]).length() + (positions[i] - before).length();
+        let gap = if i == 0 || i == last { gaps } else { gaps * 0.5 };
+        let stretch = (gap / rest).clamp(0.2, 5.0);
+        let radius = RADIUS * rest / stretch.sqrt()
+            * if i == last {
+                1.1
+            } else if i == 0 {
+                0.92
+            } else {
+                1.0
+            };
+        let forward = (after - before).normalize_or(Vec3::X);
+        let right = forward.cross(Vec3::Y).normalize_or(Vec3::Z);
+        Self {
+            middle: positions[i] + Vec3::Y * (radius + CLEARANCE * rest),
+            turn: Quat::from_mat3(&Mat3::from_cols(forward, right.cross(forward), right)),
+            half_length: HALF_LENGTH * rest * stretch,
+            radius,
+        }
+    }
+
+    /// A point of the ellipsoid's surface: `direction` is one of the unit ball (x forward, y up, z right).
+    fn surface(&self, direction: Vec3) -> Vec3 {
+        self.middle + self.turn * (direction * Vec3::new(self.half_length, self.radius, self.radius))
+    }
+
+    /// Half the thickness, so many half lengths before the middle.
+    fn thickness(&self, at: f32) -> f32 {
+        self.radius * (1.0 - at * at).max(0.0).sqrt()
+    }
+}
+
+/// Puts every part of a worm where its particles are shown.
+pub(super) fn follow(bodies: Query<(&Shown, Option<&Springs>)>, mut parts: Query<(&Part, &SkinOf, &mut Transform)>) {
+    for (part, of, mut transform) in &mut parts {
+        let Ok((shown, springs)) = bodies.get(of.0) else { continue };
+        let positions = shown.positions();
+        if positions.len() < 2 {
+            continue;
+        }
+        let rest = rest_length(springs);
+        let last = positions.len() - 1;
+        let segment = |i: usize| Segment::of(i.min(last), positions, rest);
+        *transform = match *part {
+            Part::Segment(i) => {
+                let it = segment(i);
+                place(it.middle, it.turn, Vec3::new(it.half_length, it.radius, it.radius))
+            }
+            Part::Ring(i, at) => {
+                let it = segment(i);
+                // Rings lean back at the tail and forward at the head, as scales do on a bent body; here they only shrink to fit.
+                let wide = it.thickness(at) * 1.015;
+                place(it.surface(Vec3::X * at), it.turn, Vec3::new(rest * 0.5, wide, wide))
+            }
+            Part::Joint(i) => {
+                let (a, b) = (segment(i), segment(i + 1));
+                let wide = 0.5 * (a.thickness(0.5 / HALF_LENGTH) + b.thickness(0.5 / HALF_LENGTH)) * 1.06;
+                place((a.middle + b.middle) * 0.5, a.turn.slerp(b.turn, 0.5), Vec3::new(rest * 0.56, wide, wide))
+            }
+            Part::Mouth => {
+                let it = segment(last);
+                place(it.middle, it.turn, Vec3::new(it.half_length, it.radius, it.radius) * 1.004)
+            }
+            Part::Eye(side) => {
+                let it = segment(last);
+                let turn = it.turn * Quat::from_rotation_y(-side * 0.55) * Quat::from_rotation_z(0.16);
+                place(it.surface(Vec3::new(0.62, 0.6, side * 0.5)), turn, Vec3::splat(it.radius * 0.4))
+            }
+            Part::Feeler(side) => {
+                let it = segment(last);
+                let turn = it.turn * Quat::from_rotation_x(side * 0.45) * Quat::from_rotation_z(-0.1);
+                place(it.surface(Vec3::new(0.3, 0.88, side * 0.36)), turn, Vec3::splat(it.radius))
+            }
+            Part::Blot(i) => {
+                let it = segment(i);
+                let under = it.middle.with_y(it.middle.y - it.radius + CLEARANCE * 0.8 + 0.004 * (i + 1) as f32);
+                place(
+                    under + Vec3::new(0.08, 0.0, -0.06),
+                    it.turn,
+                    Vec3::new(it.half_length * 1.15, 1.0, it.radius * 1.35),
+                )
+            }
+        };
+    }
+}
+
+fn place(translation: Vec3, rotation: Quat, scale: Vec3) -> Transform {
+    Transform { translation, rotation, scale }
+}
+
+/// The mean rest length of a body's springs: the scale of its skin.
+fn rest_length(springs: Option<&Springs>) -> f32 {
+    let Some(springs) = springs.filter(|springs| !springs.is_empty()) else { return 1.0 };
+    (springs.iter().map(|spring| spring.rest_length).sum::<f64>() / springs.len() as f64) as f32
+}
+
+/// The unit ball with a pale belly.
+fn body() -> Mesh {
+    let mut clay = Clay::default();
+    let along_x = Transform::from_rotation(Quat::from_rotation_z(-PI * 0.5));
+    clay.ball(along_x, 36, |direction| {
+        let up = -direction.x;
+        blend(tint(BELLY), tint(SKIN), (up * 1.4 + 0.85).clamp(0.0, 1.0))
+    });
+    clay.fire()
+}
+
+/// A torus about x of radius 1.
+fn ring() -> Mesh {
+    let mut clay = Clay::default();
+    let circle: Vec<Vec3> = (0..=36)
+        .map(|i| {
+            let turn = TAU * i as f32 / 36.0;
+            Vec3::new(0.0, turn.cos(), turn.sin())
+        })
+        .collect();
+    clay.tube(&circle, 10, |_| 0.12, |_| tint(RING));
+    clay.fire()
+}
+
+/// An eye that looks along x: white, pupil, two highlights.
+fn eye() -> Mesh {
+    let mut clay = Clay::default();
+    clay.ball(Transform::default(), 20, |_| tint(0xffffff));
+    let mut spot = |direction: Vec3, out: f32, size: Vec3, color: u32| {
+        let turn = Quat::from_rotation_arc(Vec3::X, direction.normalize());
+        let at = Transform::from_translation(turn * Vec3::X * out).with_rotation(turn).with_scale(size);
+        let color = if color == 0xffffff { [3.0, 3.0, 3.0, 0.0] } else { tint(color) };
+        clay.ball(at, 14, |_| color);
+    };
+    spot(Vec3::new(1.0, 0.05, 0.0), 0.74, Vec3::new(0.36, 0.66, 0.6), 0x5b3a1e);
+    spot(Vec3::new(1.0, 0.05, 0.0), 0.84, Vec3::new(0.3, 0.5, 0.45), 0x140d0a);
+    spot(Vec3::new(1.0, 0.3, 0.24), 1.08, Vec3::new(0.09, 0.16, 0.16), 0xffffff);
+    spot(Vec3::new(1.0, -0.16, -0.2), 1.08, Vec3::new(0.06, 0.09, 0.09), 0xffffff);
+    clay.fire()
+}
+
+/// A wide smile with dimples, and rosy cheeks, on the unit ball.
+fn mouth() -> Mesh {
+    let mut clay = Clay::default();
+    let smile: Vec<Vec3> = (0..=20)
+        .map(|i| {
+            let t = i as f32 / 10.0 - 1.0;
+            let (around, up): (f32, f32) = (t * 0.95, -0.3 + 0.34 * t * t);
+            Vec3::new(around.cos() * up.cos(), up.sin(), around.sin() * up.cos())
+        })
+        .collect();
+    clay.tube(&smile, 7, |t| 0.03 + 0.028 * (PI * t).sin(), |_| tint(0x7a2230));
+    for end in [smile[0], smile[20]] {
+        clay.ball(Transform::from_translation(end).with_scale(Vec3::splat(0.055)), 8, |_| tint(0x7a2230));
+    }
+    for side in [-1.0, 1.0] {
+        let direction = Vec3::new(0.52, 0.02, side * 0.85).normalize();
+        let turn = Quat::from_rotation_arc(Vec3::X, direction);
+        let cheek =
+            Transform::from_translation(direction * 0.975).with_rotation(turn).with_scale(Vec3::new(0.05, 0.17, 0.2));
+        clay.ball(cheek, 14, |_| tint(0xf76a7c));
+    }
+    clay.fire()
+}
+
+/// A feeler that stands up along y.
+fn feeler() -> Mesh {
+    let mut clay = Clay::default();
+    let stalk: Vec<Vec3> = (0..=6)
+        .map(|i| {
+            let t = i as f32 / 6.0;
+            Vec3::new(0.3 * t * t, -0.1 + 0.75 * t, 0.0)
+        })
+        .collect();
+    clay.tube(&stalk, 7, |t| 0.07 - 0.025 * t, |_| tint(SKIN));
+    clay.ball(Transform::from_translation(stalk[6]).with_scale(Vec3::splat(0.13)), 12, |_| tint(RING));
+    clay.fire()
+}
+
+/// A flat soft spot of shade.
+fn blot() -> Mesh {
+    let mut clay = Clay::default();
+    clay.grid(25, 5, |spoke, ring| {
+        let around = TAU * spoke as f32 / 24.0;
+        let out = ring as f32 / 4.0;
+        let alpha = 0.62 * (1.0 - out * out).powi(2);
+        (Vec3::new(around.cos() * out, 0.0, around.sin() * out), Vec3::Y, [0.03, 0.025, 0.01, alpha])
+    });
+    clay.fire()
+}

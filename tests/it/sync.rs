@@ -1,0 +1,65 @@
+//! What a frame shows: positions between two ticks, followers, laps.
+
+use bevy::{math::DVec3, prelude::*, time::TimeUpdateStrategy};
+use core::time::Duration;
+use wriggle::{
+    body::{Particle, ParticleId, Particles, Springs},
+    physics::{Clock, FollowParticle, Shown, ShownLap},
+};
+
+use crate::support::ticking_app;
+
+/// A mass that moves one length a second of real time, in an app whose frames last `frame` seconds.
+fn moving(frame: f64) -> (App, Entity) {
+    let mut app = ticking_app(0.001, 1.0);
+    app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_secs_f64(frame)));
+    let particle = Particle { velocity: DVec3::X, ..Particle::at(DVec3::Y) };
+    let body = app.world_mut().spawn((Particles::new([particle]).unwrap(), Springs::default())).id();
+    (app, body)
+}
+
+#[test]
+fn followers_move_evenly_between_ticks() {
+    // 200 frames a second on 64 ticks a second: without interpolation, two frames of three would stand still.
+    let (mut app, body) = moving(0.005);
+    let follower = app.world_mut().spawn(FollowParticle { body, particle: ParticleId(0) }).id();
+    for _ in 0..50 {
+        app.update();
+    }
+    let at = |app: &App| app.world().get::<Transform>(follower).unwrap().translation;
+    let mut last = at(&app);
+    for _ in 0..100 {
+        app.update();
+        let now = at(&app);
+        let moved = now.x - last.x;
+        // Ticks are a whole number of steps of 0.001, so a tick may be one step short.
+        assert!((moved - 0.005).abs() < 0.0008, "moved {moved} in a frame of 0.005");
+        assert_eq!((now.y, now.z), (1.0, 0.0));
+        last = now;
+    }
+}
+
+#[test]
+fn what_is_shown_is_at_most_a_tick_behind() {
+    let (mut app, body) = moving(0.011);
+    for _ in 0..30 {
+        app.update();
+        let shown = app.world().get::<Shown>(body).unwrap().positions()[0].x;
+        let now = app.world().resource::<Clock>().time() as f32;
+        assert!(shown <= now + 1e-6 && shown >= now - 1.0 / 64.0 - 1e-6, "{shown} at {now}");
+    }
+}
+
+#[test]
+fn a_lap_moves_what_is_shown_and_not_the_body() {
+    let (mut app, body) = moving(0.02);
+    let lap = ShownLap { end: 0.5, length: 2.0 };
+    app.world_mut().entity_mut(body).insert(lap);
+    for _ in 0..300 {
+        app.update();
+        let shown = app.world().get::<Shown>(body).unwrap().positions()[0].x;
+        assert!((-1.6..0.51).contains(&shown), "shown at {shown}");
+    }
+    assert!(app.world().get::<Particles>(body).unwrap().center().x > 5.0);
+    assert_eq!([0.0, 0.49, 0.5, 2.49, 2.5, 4.6].map(|x| lap.offset(x)), [0.0, 0.0, 2.0, 2.0, 4.0, 6.0]);
+}

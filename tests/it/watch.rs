@@ -1,0 +1,118 @@
+//! The watch: what explodes is frozen in its last good state, is named, and does not disturb its neighbour.
+
+use bevy::prelude::*;
+use wriggle::{
+    body::{Particles, Spring, SpringId, Springs},
+    mechanics::integrators::Method,
+    physics::{BodyFrozen, Frozen, Restart},
+};
+
+use crate::support::{Worm, bits, center, particles, stepping_app};
+
+fn messages(app: &mut App) -> Vec<BodyFrozen> {
+    app.world_mut().resource_mut::<Messages<BodyFrozen>>().drain().collect()
+}
+
+#[test]
+fn an_exploding_worm_is_frozen_and_its_neighbour_is_not() {
+    const DT: f64 = 0.05;
+    for method in Method::ALL {
+        let alone = {
+            let mut app = stepping_app(DT, 500);
+            let calm = app.world_mut().spawn(Worm { method, ..Worm::GARDEN }.body()).id();
+            app.update();
+            bits(particles(&app, calm))
+        };
+        let mut app = stepping_app(DT, 500);
+        let stiff = Worm { method, stiffness: 1e6, ..Worm::GARDEN }.body();
+        let wild = app.world_mut().spawn((Name::new("wild"), stiff)).id();
+        let calm = app.world_mut().spawn((Name::new("calm"), Worm { method, ..Worm::GARDEN }.body())).id();
+        app.update();
+
+        let frozen = app.world().get::<Frozen>(wild).unwrap().clone();
+        assert!(frozen.step > 1 && frozen.step < 500 && frozen.time == frozen.step as f64 * DT, "{frozen:?}");
+        for [a, b] in [[0, 1], [1, 2]] {
+            let x: Vec<_> = particles(&app, wild).positions().collect();
+            assert!(x[a].distance(x[b]) < 10.0, "the last good state is good: {x:?}");
+        }
+        let text = &messages(&mut app)[0].text;
+        let limit = app.world().get::<wriggle::physics::Plan>(wild).unwrap().stability_limit();
+        for part in [
+            "wild",
+            &format!("particle {}", frozen.particle.0),
+            &format!("step {}", frozen.step),
+            "0.05",
+            &format!("{limit:.4}"),
+        ] {
+            assert!(text.contains(part), "{text} does not name {part}");
+        }
+        assert!(app.world().get::<Frozen>(calm).is_none());
+        assert_eq!(bits(particles(&app, calm)), alone, "{method:?}");
+
+        let still = bits(particles(&app, wild));
+        app.update();
+        assert_eq!(bits(particles(&app, wild)), still);
+        assert!(messages(&mut app).is_empty());
+    }
+}
+
+#[test]
+fn a_dt_above_the_limit_warns_and_does_not_freeze() {
+    // Without muscles and at rest nothing moves, however large dt is.
+    let mut app = stepping_app(10.0, 10);
+    let body = app.world_mut().spawn(Worm { amplitude: 0.0, ..Worm::GARDEN }.body()).id();
+    app.update();
+    assert!(app.world().get::<wriggle::physics::Plan>(body).unwrap().stability_limit() < 1.0);
+    assert!(app.world().get::<Frozen>(body).is_none());
+    assert!(messages(&mut app).is_empty());
+}
+
+#[test]
+fn a_restart_thaws() {
+    let mut app = stepping_app(2.0, 200);
+    let body = app.world_mut().spawn(Worm::GARDEN.body()).id();
+    app.update();
+    assert!(app.world().get::<Frozen>(body).is_some());
+    app.world_mut().resource_mut::<wriggle::physics::Clock>().set_dt(0.01).unwrap();
+    app.world_mut().write_message(Restart);
+    for _ in 0..10 {
+        app.update();
+    }
+    assert!(app.world().get::<Frozen>(body).is_none());
+    assert!(center(&app, body) > 1.5);
+}
+
+#[test]
+fn components_of_different_bodies_are_refused_by_name() {
+    let mut app = stepping_app(0.01, 1);
+    let two = Particles::new((0..2).map(|i| wriggle::body::Particle::at(bevy::math::DVec3::X * f64::from(i)))).unwrap();
+    let body = app.world_mut().spawn((Name::new("chimera"), two, Worm::GARDEN.body().springs)).id();
+    app.update();
+    assert!(app.world().get::<Frozen>(body).unwrap().reason.contains("made for another body"));
+    assert!(messages(&mut app)[0].text.contains("chimera"));
+}
+
+#[test]
+fn a_spring_of_no_length_pulls_nowhere_and_stays_finite() {
+    let mut app = stepping_app(0.01, 100);
+    let mut worm = Worm { amplitude: 0.0, ..Worm::GARDEN }.body();
+    for i in 0..3 {
+        worm.particles.set(wriggle::body::ParticleId(i), wriggle::body::Particle::at(bevy::math::DVec3::ZERO)).unwrap();
+    }
+    let on_axis = app.world_mut().spawn(worm.clone()).id();
+    let in_space = app.world_mut().spawn((worm, wriggle::body::Gravity::new(0.0).unwrap())).id();
+    app.update();
+    for body in [on_axis, in_space] {
+        assert!(particles(&app, body).positions().all(|x| x == bevy::math::DVec3::ZERO));
+    }
+}
+
+#[test]
+fn a_muscle_never_drives_a_spring_below_the_least_rest_length() {
+    let mut body = Worm { amplitude: 3.0, ramp: 0.0, ..Worm::GARDEN }.body();
+    body.springs.set(SpringId(0), Spring { rest_length: 2.0, ..body.springs.get(SpringId(0)).unwrap() }).unwrap();
+    let rest =
+        |springs: &Springs, time| wriggle::mechanics::rest_length(springs, Some(&body.muscles), SpringId(0), time);
+    assert_eq!(rest(&body.springs, 4.5), 0.4);
+    assert!((rest(&body.springs, 1.5) - 8.0).abs() < 1e-14);
+}
