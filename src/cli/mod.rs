@@ -63,6 +63,10 @@ pub enum CliError {
     /// Flags contradict the scene or each other.
     #[error("{0}")]
     Usage(String),
+    /// A picture cannot be drawn or written.
+    #[cfg(feature = "window")]
+    #[error(transparent)]
+    Shot(#[from] crate::view::ShotError),
     /// Reading or writing failed.
     #[error("could not write to {place}: {error}")]
     Output {

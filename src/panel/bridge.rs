@@ -1,0 +1,230 @@
+//! Between the world and the panel: fills [`Settings`] before the panel is drawn, and afterwards does what was asked for. Nothing in the
+//! world is touched, nor marked as changed, unless the user changed it.
+
+use std::collections::HashMap;
+
+use bevy::{
+    ecs::{change_detection::DetectChanges, change_detection::Tick, prelude::*},
+    prelude::Name,
+    time::{Fixed, Real, Time, Virtual},
+};
+
+use super::{
+    gauge::Gauge,
+    names::Path,
+    setting::Setting,
+    settings::{Action, BodyInfo, Settings},
+    traces::Traces,
+};
+use crate::{
+    body::Particles,
+    creatures::library,
+    physics::{BodyFrozen, Clock, Frozen, Plan, Restart},
+    scenes::{self, CurrentScene, SceneChange, SceneProblem, parameters},
+};
+
+/// Seconds between two readings of all parameters: others than the panel change them rarely.
+const REREAD: f64 = 0.25;
+/// With more parameters than this, they are only read again when something was changed.
+const MANY: usize = 2000;
+
+/// What the bridge remembers of the world from one frame to the next.
+#[derive(Debug, Default, Resource)]
+pub struct Known {
+    scene: Option<Tick>,
+    defaults: HashMap<String, f64>,
+    read_at: Option<f64>,
+    selected: usize,
+    frozen: HashMap<Entity, String>,
+}
+
+/// Takes up what the watch and the scenes report.
+pub(super) fn listen(
+    mut frozen: MessageReader<BodyFrozen>,
+    mut problems: MessageReader<SceneProblem>,
+    mut known: ResMut<Known>,
+    mut settings: ResMut<Settings>,
+) {
+    for BodyFrozen { body, text } in frozen.read() {
+        known.frozen.insert(*body, text.clone());
+        known.read_at = None;
+    }
+    for problem in problems.read() {
+        settings.tell(true, problem.text.clone());
+    }
+}
+
+/// Fills the settings from the world.
+pub fn read(world: &mut World) {
+    world.resource_scope(|world, mut settings: Mut<Settings>| {
+        world.resource_scope(|world, mut known: Mut<Known>| {
+            read_clock(world, &mut settings);
+            let scene = world.get_resource_ref::<CurrentScene>().map(|scene| scene.last_changed());
+            let opened = scene != known.scene || known.defaults.is_empty();
+            if opened {
+                known.scene = scene;
+                open(world, &mut settings, &mut known);
+            }
+            if opened || is_stale(world, &settings, &known) {
+                read_bodies(world, &mut settings, &known);
+                read_parameters(world, &mut settings, &mut known, opened);
+            }
+            settings.gauge = gauge(world);
+        });
+    });
+}
+
+fn read_clock(world: &World, settings: &mut Settings) {
+    if let Some(time) = world.get_resource::<Time<Virtual>>() {
+        settings.paused = time.is_paused();
+    }
+    if let Some(time) = world.get_resource::<Time<Fixed>>() {
+        settings.tick = time.timestep().as_secs_f64();
+    }
+    if let Some(clock) = world.get_resource::<Clock>() {
+        (settings.time, settings.step) = (clock.time(), clock.step());
+    }
+}
+
+/// Another scene: what belonged to the last one is forgotten.
+fn open(world: &mut World, settings: &mut Settings, known: &mut Known) {
+    known.defaults = parameters::list(world).into_iter().map(|parameter| (parameter.path, parameter.value)).collect();
+    known.frozen.clear();
+    settings.parameters.clear();
+    settings.normal_time_scale = None;
+    settings.steps_refusal = None;
+    settings.files.scenes = library::list(library::SCENE).into_keys().collect();
+    if let Some(scene) = world.get_resource::<CurrentScene>() {
+        settings.files.title.clone_from(&scene.file.title);
+        settings.files.source.clone_from(&scene.source);
+    }
+    if let Some(mut traces) = world.get_resource_mut::<Traces>() {
+        traces.clear();
+    }
+}
+
+fn is_stale(world: &World, settings: &Settings, known: &Known) -> bool {
+    let now = world.get_resource::<Time<Real>>().map_or(f64::INFINITY, |time| time.elapsed_secs_f64());
+    known.selected != settings.selected
+        || known.read_at.is_none_or(|read_at| now - read_at >= REREAD && known.defaults.len() <= MANY)
+}
+
+fn read_bodies(world: &mut World, settings: &mut Settings, known: &Known) {
+    // The selection is a place in the list; it stays with the body.
+    let before = settings.body().map(|body| body.entity);
+    let moved = known.selected == settings.selected;
+    let mut bodies: Vec<_> = world
+        .query_filtered::<(Entity, &Name, Option<&Frozen>), With<Particles>>()
+        .iter(world)
+        .map(|(entity, name, frozen)| BodyInfo {
+            entity,
+            name: name.to_string(),
+            frozen: frozen.map(|frozen| known.frozen.get(&entity).unwrap_or(&frozen.reason).clone()),
+        })
+        .collect();
+    bodies.sort_by_key(|body| body.entity);
+    if moved {
+        settings.selected = bodies.iter().position(|body| Some(body.entity) == before).unwrap_or(0);
+    }
+    settings.selected = settings.selected.min(bodies.len().saturating_sub(1));
+    settings.bodies = bodies;
+}
+
+/// Reads the parameters of the clock and of the selected body; what is being typed and what was refused stays.
+fn read_parameters(world: &mut World, settings: &mut Settings, known: &mut Known, opened: bool) {
+    let mut old: HashMap<String, Setting> =
+        settings.parameters.drain(..).map(|setting| (setting.path.clone(), setting)).collect();
+    let body = settings.body().map(|body| body.name.clone()).unwrap_or_default();
+    for parameter in parameters::list(world) {
+        if !["clock", body.as_str()].contains(&Path::parse(&parameter.path).owner) {
+            continue;
+        }
+        let mut setting = match old.remove(&parameter.path) {
+            Some(setting) if !opened => setting,
+            _ => Setting {
+                unit: parameter.unit.into(),
+                help: parameter.help.into(),
+                kind: parameter.kind,
+                default: *known.defaults.entry(parameter.path.clone()).or_insert(parameter.value),
+                ..Setting::new(&parameter.path, parameter.value, parameter.range.clone())
+            },
+        };
+        (setting.value, setting.range) = (parameter.value, parameter.range);
+        settings.parameters.push(setting);
+    }
+    settings.method = parameters::method(world);
+    known.selected = settings.selected;
+    known.read_at = world.get_resource::<Time<Real>>().map(|time| time.elapsed_secs_f64());
+}
+
+/// The body for which dt is nearest to its limit.
+fn gauge(world: &mut World) -> Option<Gauge> {
+    let dt = world.get_resource::<Clock>()?.dt();
+    let mut plans = world.query::<(Option<&Name>, &Plan)>();
+    let (name, plan) =
+        plans.iter(world).min_by(|(_, a), (_, b)| a.stability_limit().total_cmp(&b.stability_limit()))?;
+    let body = name.map_or_else(|| "body".into(), |name| name.to_string());
+    Some(Gauge { dt, limit: plan.stability_limit(), body })
+}
+
+/// Does what the settings ask for.
+pub fn apply(world: &mut World) {
+    if world.resource::<Settings>().actions.is_empty() {
+        return;
+    }
+    world.resource_scope(|world, mut settings: Mut<Settings>| {
+        for action in core::mem::take(&mut settings.actions) {
+            act(world, &mut settings, action);
+        }
+    });
+    if let Some(mut known) = world.get_resource_mut::<Known>() {
+        known.read_at = None;
+    }
+}
+
+fn act(world: &mut World, settings: &mut Settings, action: Action) {
+    match action {
+        Action::Set { path, value } => {
+            if let Err(refusal) = parameters::set(world, &path, value) {
+                match settings.get_mut(&path) {
+                    Some(setting) => setting.refusal = Some(refusal.to_string()),
+                    None => settings.tell(true, refusal.to_string()),
+                }
+            }
+        }
+        Action::Method(method) => parameters::set_method(world, method),
+        Action::Pause(paused) => pause(world, paused),
+        Action::Tick => {
+            pause(world, true);
+            if let Some(mut time) = world.get_resource_mut::<Time<Fixed>>() {
+                let tick = time.timestep();
+                time.accumulate_overstep(tick);
+            }
+        }
+        Action::Restart => {
+            world.write_message(Restart);
+            if let Some(mut traces) = world.get_resource_mut::<Traces>() {
+                traces.clear();
+            }
+        }
+        Action::Save(path) => match scenes::save(world, &path) {
+            Ok(()) => settings.tell(false, format!("saved as {}", path.display())),
+            Err(problem) => settings.tell(true, problem.to_string()),
+        },
+        Action::Load(name) => {
+            world.write_message(SceneChange::Load(name));
+        }
+        Action::Reload => {
+            world.write_message(SceneChange::Reload);
+        }
+    }
+}
+
+fn pause(world: &mut World, paused: bool) {
+    let Some(time) = world.get_resource::<Time<Virtual>>() else { return };
+    if time.is_paused() != paused
+        && let Some(mut time) = world.get_resource_mut::<Time<Virtual>>()
+    {
+        if paused { time.pause() } else { time.unpause() }
+    }
+}

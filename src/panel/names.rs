@@ -1,0 +1,85 @@
+//! What the parameters are called, by their paths.
+
+use crate::body::Requirement;
+
+/// A parameter's path, taken apart: `owner.group[index].field`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Path<'a> {
+    /// The body's name, or `clock`.
+    pub owner: &'a str,
+    /// `springs`, `particles`, `muscles`, `friction`, or nothing.
+    pub group: &'a str,
+    /// The element, where the path names one.
+    pub index: Option<usize>,
+    /// The field.
+    pub field: &'a str,
+}
+
+impl<'a> Path<'a> {
+    /// The groups of a body.
+    const GROUPS: [&'static str; 4] = ["springs", "particles", "muscles", "friction"];
+
+    /// Takes a path apart. A body's name may contain points.
+    pub fn parse(path: &'a str) -> Self {
+        let (rest, field) = path.rsplit_once('.').unwrap_or(("", path));
+        let (before, last) = rest.rsplit_once('.').unwrap_or(("", rest));
+        let (group, index) = match last.strip_suffix(']').and_then(|last| last.split_once('[')) {
+            Some((group, index)) => (group, index.parse().ok()),
+            None => (last, None),
+        };
+        if !before.is_empty() && Self::GROUPS.contains(&group) {
+            Self { owner: before, group, index, field }
+        } else {
+            Self { owner: rest, group: "", index: None, field }
+        }
+    }
+}
+
+/// What a parameter is called and what it must be. The registry of parameters has the last word on both range and value.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Name {
+    /// Its name with the symbol of the formulas.
+    pub label: String,
+    /// What a typed value must be.
+    pub requirement: Requirement,
+    /// The slider spans powers of ten.
+    pub logarithmic: bool,
+}
+
+impl Name {
+    /// The name of the parameter at `path`.
+    pub fn of(path: &str) -> Self {
+        use Requirement::{Finite, NonNegative, Positive};
+        let path = Path::parse(path);
+        let (label, requirement) = match path.field {
+            "stiffness" => ("stiffness k", NonNegative),
+            "damping" => ("damping D", NonNegative),
+            "rest_length" => ("rest length L", Positive),
+            "mass" => ("mass m", Positive),
+            "amplitude" => ("amplitude A", NonNegative),
+            "period" => ("period T", Positive),
+            "phase" => ("phase φ", Finite),
+            "ramp" => ("ramp", NonNegative),
+            "drag" => ("forward drag μ_f", NonNegative),
+            "grip" => ("side grip μ_l", NonNegative),
+            "ratchet" => ("ratchet", NonNegative),
+            "gravity" => ("gravity g", NonNegative),
+            "dt" => ("step dt", Positive),
+            "time_scale" => ("time scale", NonNegative),
+            other => (other, Finite),
+        };
+        let label = match path.index {
+            Some(index) => format!("{label} of {} {index}", element(path.group)),
+            None => label.into(),
+        };
+        Self { label, requirement, logarithmic: path.field == "dt" }
+    }
+}
+
+/// What one element of a group is called.
+pub fn element(group: &str) -> &str {
+    match group {
+        "particles" => "mass",
+        other => other.strip_suffix('s').unwrap_or(other),
+    }
+}

@@ -1,0 +1,131 @@
+//! The plots: lengths, velocities, distance, and the cost of a frame.
+
+use bevy_egui::egui::{self, Color32, FontId, RichText, Vec2b};
+use egui_plot::{AxisHints, Line, Plot, PlotPoints, PlotUi, Span};
+
+use super::{
+    colors::{self, SERIES},
+    ring::Ring,
+    settings::Settings,
+    traces::Traces,
+};
+
+/// How high a plot is.
+const HEIGHT: f32 = 108.0;
+
+/// All plots.
+pub fn section(ui: &mut egui::Ui, settings: &mut Settings, traces: &Traces) {
+    if traces.time.is_empty() {
+        ui.weak("The plots begin with the first tick.");
+    } else {
+        lengths(ui, traces);
+        velocities(ui, traces);
+        distance(ui, traces);
+    }
+    cost(ui, settings, traces);
+}
+
+fn lengths(ui: &mut egui::Ui, traces: &Traces) {
+    legend(ui, "spring length (thin: rest length)", traces.springs.iter().map(|trace| trace.name.as_str()));
+    show(ui, "lengths", span(&traces.time), |plot| {
+        for (trace, color) in traces.springs.iter().zip(SERIES) {
+            let rest = format!("rest length {}", trace.name);
+            plot.line(Line::new(rest, points(&traces.time, &trace.rest)).color(faint(color, 0.6)).width(1.0));
+            plot.line(Line::new(trace.name.as_str(), points(&traces.time, &trace.length)).color(color).width(1.8));
+        }
+    });
+}
+
+fn velocities(ui: &mut egui::Ui, traces: &Traces) {
+    legend(ui, "velocity (shaded: at rest)", traces.masses.iter().map(|trace| trace.name.as_str()));
+    show(ui, "velocities", span(&traces.time), |plot| {
+        for (index, color) in (0..traces.masses.len()).zip(SERIES) {
+            for rest in traces.rests(index) {
+                plot.span(Span::new("", rest).fill(faint(color, 0.22)));
+            }
+        }
+        for (trace, color) in traces.masses.iter().zip(SERIES) {
+            plot.line(Line::new(trace.name.as_str(), points(&traces.time, &trace.velocity)).color(color).width(1.6));
+        }
+    });
+}
+
+fn distance(ui: &mut egui::Ui, traces: &Traces) {
+    let now = traces.distance.last().copied().unwrap_or_default();
+    legend(ui, &format!("distance travelled: {now:.2}"), []);
+    show(ui, "distance", span(&traces.time), |plot| {
+        plot.line(Line::new("distance", points(&traces.time, &traces.distance)).color(SERIES[0]).width(1.8));
+    });
+}
+
+fn cost(ui: &mut egui::Ui, settings: &Settings, traces: &Traces) {
+    let cost = settings.cost;
+    let rate = if cost.frame > 0.0 { 1000.0 / cost.frame } else { 0.0 };
+    legend(ui, "milliseconds a frame", ["frame", "physics"]);
+    ui.label(
+        RichText::new(format!(
+            "{:.1} ms ({rate:.0} a second) · physics {:.3} ms · {} steps a tick",
+            cost.frame, cost.physics, cost.steps_per_tick
+        ))
+        .small()
+        .weak(),
+    );
+    let Some((first, last)) = traces.frames.first().zip(traces.frames.last()) else { return };
+    show(ui, "cost", (first.time, last.time), |plot| {
+        let line = |value: fn(&super::traces::Frame) -> f64| -> PlotPoints<'_> {
+            traces.frames.iter().map(|frame| [frame.time, value(frame)]).collect()
+        };
+        plot.line(Line::new("frame", line(|frame| frame.frame)).color(SERIES[0]).fill(0.0).fill_alpha(0.15));
+        plot.line(Line::new("physics", line(|frame| frame.physics)).color(SERIES[1]).width(1.8));
+    });
+}
+
+/// The title of a plot, with the names of its lines in their colours.
+fn legend<'a>(ui: &mut egui::Ui, title: &str, names: impl IntoIterator<Item = &'a str>) {
+    ui.add_space(4.0);
+    ui.horizontal(|ui| {
+        ui.label(RichText::new(title).size(12.0));
+        for (name, color) in names.into_iter().zip(SERIES) {
+            ui.label(RichText::new(format!("● {name}")).size(11.5).color(color));
+        }
+    });
+}
+
+/// A plot over `span`, as high as its lines ask for.
+fn show<'a>(ui: &mut egui::Ui, id: &str, (start, end): (f64, f64), draw: impl FnOnce(&mut PlotUi<'a>) + 'a) {
+    let font = FontId::proportional(10.0);
+    let axes = [AxisHints::new_x(), AxisHints::new_y().min_thickness(26.0)]
+        .map(|axis| axis.tick_label_font(font.clone()).tick_label_color(Color32::from_gray(0x90)));
+    let [x, y] = axes;
+    ui.visuals_mut().extreme_bg_color = colors::WELL;
+    Plot::new(id.to_string())
+        .height(HEIGHT)
+        .width(ui.available_width() - 2.0)
+        .custom_x_axes(vec![x])
+        .custom_y_axes(vec![y])
+        .allow_drag(false)
+        .allow_zoom(false)
+        .allow_scroll(false)
+        .allow_boxed_zoom(false)
+        .allow_axis_zoom_drag(false)
+        .allow_double_click_reset(false)
+        .grid_spacing(24.0..=200.0)
+        .show(ui, move |plot| {
+            plot.set_auto_bounds(Vec2b::new(false, true));
+            draw(plot);
+            // A span of no length has no scale.
+            plot.set_plot_bounds_x(start..=end.max(start + 1e-3));
+        });
+}
+
+fn points<'a>(time: &Ring<f64>, values: &Ring<f64>) -> PlotPoints<'a> {
+    time.iter().zip(values.iter()).map(|(&time, &value)| [time, value]).collect()
+}
+
+fn span(time: &Ring<f64>) -> (f64, f64) {
+    (time.first().copied().unwrap_or_default(), time.last().copied().unwrap_or_default())
+}
+
+fn faint(color: Color32, opacity: f32) -> Color32 {
+    color.gamma_multiply(opacity)
+}

@@ -1,0 +1,73 @@
+//! Fills the traces: once a tick from the body that the panel shows, and once a frame with what it cost.
+
+use bevy::{
+    ecs::prelude::*,
+    time::{Real, Time},
+};
+
+use super::{
+    settings::Settings,
+    traces::{Frame, Traces, observe},
+};
+use crate::{
+    body::{Muscles, Particles, SpineFriction, Springs},
+    physics::{Clock, Cost, StartState},
+};
+
+/// How much of a new frame's cost goes into the numbers that are shown.
+const SMOOTHING: f64 = 0.08;
+
+/// What has been measured since the last frame.
+#[derive(Debug, Default, Resource)]
+pub(super) struct Meter {
+    physics: f64,
+    step: u64,
+    steps_per_tick: u64,
+}
+
+type Body = (
+    &'static Particles,
+    &'static Springs,
+    Option<&'static Muscles>,
+    Option<&'static SpineFriction>,
+    Option<&'static StartState>,
+);
+
+/// Samples the body after a tick.
+pub(super) fn tick(
+    clock: Option<Res<Clock>>,
+    cost: Option<Res<Cost>>,
+    settings: Res<Settings>,
+    bodies: Query<Body>,
+    mut traces: ResMut<Traces>,
+    mut meter: ResMut<Meter>,
+) {
+    meter.physics += cost.map_or(0.0, |cost| cost.seconds);
+    let Some(clock) = clock else { return };
+    meter.steps_per_tick = clock.step().saturating_sub(meter.step);
+    meter.step = clock.step();
+    let Some(body) = settings.body().map(|body| body.entity) else { return };
+    let Ok((particles, springs, muscles, friction, start)) = bodies.get(body) else { return };
+    let start = start.map_or_else(|| particles.center(), |start| start.0.center());
+    traces.record(body, &observe(particles, springs, muscles, friction, start, clock.time()));
+}
+
+/// Samples the cost of a frame.
+pub(super) fn frame(
+    time: Res<Time<Real>>,
+    mut meter: ResMut<Meter>,
+    mut traces: ResMut<Traces>,
+    mut settings: ResMut<Settings>,
+) {
+    let frame = Frame {
+        time: time.elapsed_secs_f64(),
+        frame: time.delta_secs_f64() * 1e3,
+        physics: core::mem::take(&mut meter.physics) * 1e3,
+    };
+    traces.frames.push(frame);
+    let cost = &mut settings.cost;
+    let weight = if cost.frame == 0.0 { 1.0 } else { SMOOTHING };
+    cost.frame += (frame.frame - cost.frame) * weight;
+    cost.physics += (frame.physics - cost.physics) * weight;
+    cost.steps_per_tick = meter.steps_per_tick;
+}
