@@ -130,7 +130,11 @@ fn a_turned_and_shifted_worm_crawls_the_same_way() {
         app.update();
         let rotation = bevy::math::DQuat::from_rotation_y(turn);
         for (a, b) in particles(&app, straight).positions().zip(particles(&app, turned).positions()) {
-            assert!((rotation * a + by - b).length() < 1e-11, "{a} and {b}, {method:?}, {:e}", (rotation * a + by - b).length());
+            assert!(
+                (rotation * a + by - b).length() < 1e-11,
+                "{a} and {b}, {method:?}, {:e}",
+                (rotation * a + by - b).length()
+            );
         }
         assert!(particles(&app, straight).center().x > 2.0);
     }
