@@ -138,7 +138,9 @@ fn helper_saves_the_garden() {
     let Some(path) = std::env::var_os("WRIGGLE_TEST_SAVE_TO") else { return };
     let mut world = World::new();
     open(&mut world, Path::new("garden"));
-    scenes::save(&mut world, Path::new(&path)).unwrap();
+    if let Err(problem) = scenes::save(&mut world, Path::new(&path)) {
+        panic!("{problem}");
+    }
 }
 
 #[test]
