@@ -58,7 +58,7 @@ pub enum CliError {
     #[error(transparent)]
     File(#[from] FileError),
     /// A parameter cannot be set.
-    #[error("--set {0}")]
+    #[error("--set: {0}")]
     Parameter(#[from] ParameterError),
     /// Flags contradict the scene or each other.
     #[error("{0}")]

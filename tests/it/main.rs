@@ -2,12 +2,16 @@
 
 mod support;
 
+mod cli;
 mod clock;
 mod determinism;
 mod exact_worm;
+mod files;
 mod friction;
 mod garden_worm;
 mod laws;
+mod parameters;
+mod saving;
 mod stability;
 mod sync;
 mod watch;
