@@ -1,4 +1,51 @@
-//! Wriggle: a simulator of small soft creatures made of masses and springs.
+//! Wriggle simulates small soft creatures made of masses and springs, in Bevy.
+//!
+//! - **Play**: the binary `wriggle` opens a garden in which a worm crawls to its house.
+//! - **Build a game**: add [`PhysicsPlugin`](physics::PhysicsPlugin) and spawn creatures, as below.
+//! - **Study methods**: [`mechanics`] has the forces, the methods of integration and their stability limits; `wriggle run` steps any scene
+//!   by any of them and records it.
+//!
+//! A worm in an app of your own:
+//!
+//! ```
+//! use bevy::{ecs::system::EntityCommand, prelude::*};
+//! use wriggle::prelude::*;
+//!
+//! fn main() -> Result<(), BodyError> {
+//!     let mut app = App::new();
+//!     app.add_plugins((MinimalPlugins, PhysicsPlugin::default()));
+//!     app.insert_resource(Clock::new(0.005, 3.0)?); // dt, and how many units of time a second shows
+//!
+//!     let body = Creature::from(GardenWorm::default()).body(Pose::default())?;
+//!     let worm = app.world_mut().spawn(Name::new("worm")).id();
+//!     body.apply(app.world_mut().entity_mut(worm));
+//!     // Anything with a Transform can follow a particle: a mesh, a camera, a label.
+//!     app.world_mut().spawn(FollowParticle { body: worm, particle: ParticleId(2) });
+//!
+//!     # app.insert_resource(bevy::time::TimeUpdateStrategy::FixedTimesteps(1));
+//!     for _ in 0..1000 {
+//!         app.update();
+//!     }
+//!     let crawled = app.world().get::<Particles>(worm).map(|worm| worm.center().x - 1.0);
+//!     assert!(crawled > Some(4.0), "{crawled:?}");
+//!     Ok(())
+//! }
+//! ```
+//!
+//! # The map of the house
+//!
+//! A room uses only rooms that come before it in this list.
+//!
+//! | room | what it holds |
+//! |---|---|
+//! | [`body`] | what a body is made of: components, plain data and its invariants |
+//! | [`mechanics`] | pure functions on a body's data: forces, friction, contact, energy, stability; one file a method of integration |
+//! | [`creatures`] | blueprints (data) that become bodies, and the files that they are read from |
+//! | [`physics`] | the plugin: clock, schedule, the systems of a tick, the watch |
+//! | [`scenes`] | scene files that become entities; live parameters; saving |
+//! | `view` | what is drawn (with the feature `window`) |
+//! | `panel` | what is set and plotted (with the feature `window`) |
+//! | [`cli`] | one file a command |
 #![warn(missing_docs)]
 
 pub mod body;
@@ -11,3 +58,16 @@ pub mod physics;
 pub mod scenes;
 #[cfg(feature = "window")]
 pub mod view;
+
+/// What a game needs to have creatures in it.
+pub mod prelude {
+    pub use crate::{
+        body::{
+            BodyError, Gravity, Ground, Muscle, Muscles, Particle, ParticleId, Particles, SpineFriction, Spring,
+            SpringId, Springs, Wave,
+        },
+        creatures::{Creature, GardenWorm, Pose},
+        mechanics::integrators::Method,
+        physics::{BodyFrozen, Clock, FollowParticle, Frozen, PhysicsPlugin, PhysicsSystems, Restart, Shown},
+    };
+}

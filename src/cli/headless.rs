@@ -31,7 +31,8 @@ impl Headless {
     /// As [`scenes::open`].
     pub fn new(scene: LoadedScene, threads: Option<usize>) -> Result<Self, FileError> {
         let mut app = App::new();
-        let task_pool_options = threads.map_or_else(TaskPoolOptions::default, pools_of);
+        let threads = threads.unwrap_or_else(bevy::tasks::available_parallelism);
+        let task_pool_options = pools_of(threads);
         app.add_plugins(MinimalPlugins.set(TaskPoolPlugin { task_pool_options }));
         app.add_plugins(PhysicsPlugin::new(Update));
         app.finish();

@@ -58,11 +58,15 @@ pub enum CliError {
     #[error(transparent)]
     File(#[from] FileError),
     /// A parameter cannot be set.
-    #[error("--set {0}")]
+    #[error("--set: {0}")]
     Parameter(#[from] ParameterError),
     /// Flags contradict the scene or each other.
     #[error("{0}")]
     Usage(String),
+    /// A picture cannot be drawn or written.
+    #[cfg(feature = "window")]
+    #[error(transparent)]
+    Shot(#[from] crate::view::ShotError),
     /// Reading or writing failed.
     #[error("could not write to {place}: {error}")]
     Output {

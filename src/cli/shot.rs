@@ -1,11 +1,16 @@
 //! `wriggle shot`: a scene at a time, drawn into a picture without a window.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
+use bevy::ecs::{message::Messages, schedule::ScheduleLabel};
 use clap::Args;
 
 use super::{CliError, Outcome, values};
-use crate::scenes;
+use crate::{
+    physics::{BodyFrozen, Clock, PhysicsPlugin},
+    scenes::{self, ScenesPlugin},
+    view::Shot,
+};
 
 #[derive(Args, Debug)]
 pub(super) struct ShotArguments {
@@ -28,10 +33,26 @@ pub(super) fn shot(arguments: &ShotArguments) -> Result<Outcome, CliError> {
     draw(scene, steps, arguments.size, &arguments.out)
 }
 
+/// Ticks of a scene that is drawn when it has reached its time.
+#[derive(Clone, Debug, Eq, Hash, PartialEq, ScheduleLabel)]
+struct Ticks;
+
 /// Draws `scene` after `steps`.
-fn draw(scene: scenes::LoadedScene, steps: u64, size: (u32, u32), out: &std::path::Path) -> Result<Outcome, CliError> {
-    let _ = (scene, steps, size);
-    Err(CliError::Usage(format!("{}: this build draws no pictures", out.display())))
+fn draw(scene: scenes::LoadedScene, steps: u64, size: (u32, u32), out: &Path) -> Result<Outcome, CliError> {
+    let mut shot = Shot::new(size, None, |app| {
+        app.add_plugins((PhysicsPlugin::new(Ticks), ScenesPlugin::new(scene)));
+    })?;
+    // The first frame opens the scene.
+    shot.update();
+    let world = shot.world_mut();
+    world.resource_mut::<Clock>().set_steps_per_tick(steps);
+    world.run_schedule(Ticks);
+    let frozen: Vec<_> = world.resource_mut::<Messages<BodyFrozen>>().drain().collect();
+    shot.picture()?.save(out)?;
+    for BodyFrozen { text, .. } in &frozen {
+        eprintln!("{text}");
+    }
+    Ok(if frozen.is_empty() { Outcome::Done } else { Outcome::Frozen })
 }
 
 fn size(text: &str) -> Result<(u32, u32), String> {

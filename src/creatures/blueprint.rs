@@ -39,6 +39,7 @@ impl parse::CurrentVersion for Creature {
 
 /// What a creature is made of.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename = "Body")]
 pub enum Plan {
     /// Particles and springs one by one.
     Raw(RawBody),

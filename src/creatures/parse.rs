@@ -38,12 +38,11 @@ pub(crate) fn parse<T: CurrentVersion>(text: &str, file: &str) -> Result<T, File
 }
 
 fn read<T: DeserializeOwned>(text: &str, file: &str) -> Result<T, FileError> {
-    let fail = |error: ron::error::SpannedError, field: String| FileError::Value {
-        file: file.into(),
-        line: error.span.start.line,
-        column: error.span.start.col,
-        field: field_name(&field),
-        problem: problem(&error.code),
+    let fail = |error: ron::error::SpannedError, field: String| {
+        // A value is where it begins; what should not be there is where the reader stopped.
+        let place = if error.code == ron::Error::TrailingCharacters { error.span.end } else { error.span.start };
+        let (line, column) = (place.line, place.col);
+        FileError::Value { file: file.into(), line, column, field: field_name(&field), problem: problem(&error.code) }
     };
     let mut deserializer =
         ron::Deserializer::from_str_with_options(text, &options()).map_err(|error| fail(error, String::new()))?;

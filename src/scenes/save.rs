@@ -35,7 +35,19 @@ pub fn save(world: &mut World, path: &Path) -> Result<(), FileError> {
     let scene = scene.clone();
     let file = current(world, &scene, path)?;
     let text = options().to_string_pretty(&file, PrettyConfig::new()).map_err(|error| fail(error.to_string()))?;
-    write(path, format!("Scene{text}\n").as_bytes()).map_err(|error| fail(error.to_string()))
+    let content = format!("Scene{text}\n").into_bytes();
+    write(path, &content).map_err(|error| fail(error.to_string()))?;
+    let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+    world.insert_resource(LastSaved { path, content });
+    Ok(())
+}
+
+/// What was saved last. Watching files takes no notice of it: the scene is that way already.
+#[derive(Resource)]
+#[cfg_attr(not(feature = "window"), expect(dead_code, reason = "files are watched only beside a window"))]
+pub(super) struct LastSaved {
+    pub(super) path: std::path::PathBuf,
+    pub(super) content: Vec<u8>,
 }
 
 /// The scene's file as it would have to be, at `path`, to give what is now.

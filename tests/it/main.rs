@@ -2,14 +2,18 @@
 
 mod support;
 
+mod cli;
 mod clock;
 mod determinism;
 mod exact_worm;
+mod files;
 mod friction;
 mod garden_worm;
 mod laws;
 #[cfg(feature = "window")]
 mod panel;
+mod parameters;
+mod saving;
 mod stability;
 mod sync;
 mod watch;

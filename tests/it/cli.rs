@@ -1,0 +1,222 @@
+//! The program from outside: exit codes, what it prints, and what it writes.
+
+use std::{
+    fs,
+    path::Path,
+    process::{Command, Output, Stdio},
+};
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+fn wriggle(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_wriggle")).args(arguments).output().unwrap()
+}
+
+fn in_folder(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_wriggle")).args(arguments).current_dir(folder).output().unwrap()
+}
+
+fn stdout(output: &Output) -> String {
+    String::from_utf8(output.stdout.clone()).unwrap()
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8(output.stderr.clone()).unwrap()
+}
+
+fn json(arguments: &[&str]) -> Value {
+    let output = wriggle(&[arguments, &["--json"]].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+#[test]
+fn json_has_every_field() {
+    let result = json(&["run", "garden", "--for", "6", "--threads", "2"]);
+    let keys = |value: &Value| value.as_object().unwrap().keys().cloned().collect::<std::collections::BTreeSet<_>>();
+    let fields = "scene method dt time steps wall_seconds force_evaluations spring_updates hash threads bodies";
+    assert_eq!(keys(&result), fields.split(' ').map(String::from).collect());
+    let fields = "name particles springs start center distance status";
+    assert_eq!(keys(&result["bodies"][0]), fields.split(' ').map(String::from).collect());
+    assert_eq!((result["scene"].as_str(), result["method"].as_str()), (Some("garden"), Some("SemiImplicitEuler")));
+    assert_eq!((result["dt"].as_f64(), result["time"].as_f64()), (Some(0.0005), Some(6.0)));
+    assert_eq!((result["steps"].as_u64(), result["force_evaluations"].as_u64()), (Some(12_000), Some(12_000)));
+    assert_eq!((result["spring_updates"].as_u64(), result["threads"].as_u64()), (Some(24_000), Some(2)));
+    let hash = result["hash"].as_str().unwrap();
+    assert!(hash.len() == 16 && hash.chars().all(|c| c.is_ascii_hexdigit()), "{hash}");
+    let body = &result["bodies"][0];
+    assert_eq!((body["name"].as_str(), body["status"].as_str()), (Some("worm"), Some("running")));
+    assert_eq!(body["start"], serde_json::json!([1.0, 0.0, 0.0]));
+    let moved = body["center"][0].as_f64().unwrap() - 1.0;
+    assert!(moved > 0.1 && (body["distance"].as_f64().unwrap() - moved).abs() < 1e-15, "{body}");
+}
+
+#[test]
+fn flags_change_the_run() {
+    let plain = json(&["run", "garden", "--for", "3"]);
+    let set = json(&["run", "garden", "--for", "3", "--set", "worm.springs.stiffness=2", "--set", "worm.gravity=0"]);
+    assert_ne!(plain["hash"], set["hash"]);
+    let other = json(&["run", "garden", "--for", "3", "--dt", "0.01", "--method", "RungeKutta4"]);
+    assert_eq!((other["method"].as_str(), other["steps"].as_u64()), (Some("RungeKutta4"), Some(300)));
+    assert_eq!(other["force_evaluations"].as_u64(), Some(1200));
+    assert_eq!(json(&["run", "garden", "--dt", "0.05"])["time"].as_f64(), Some(60.0));
+    assert_eq!(json(&["run", "garden", "--for", "0"])["steps"].as_u64(), Some(0));
+}
+
+#[test]
+fn a_recording_has_every_bit_and_ends_with_the_hashed_state() {
+    let folder = TempDir::new().unwrap();
+    let output =
+        in_folder(folder.path(), &["run", "race", "--for", "1.5", "--record", "r.csv", "--every", "0.5", "--json"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let table = fs::read_to_string(folder.path().join("r.csv")).unwrap();
+    let mut lines = table.lines();
+    assert_eq!(lines.next(), Some("time,body,particle,x,y,z,vx,vy,vz"));
+    let rows: Vec<Vec<&str>> = lines.map(|line| line.split(',').collect()).collect();
+    assert_eq!(rows.len(), 4 * 4 * 3);
+    assert_eq!(rows[0], ["0", "plain", "0", "0", "0", "-3", "0", "0", "0"]);
+    assert_eq!(rows[47][..3], ["1.5", "stiff", "2"]);
+    // FNV-1a 64 of the last rows: all positions, then all velocities.
+    let last = &rows[36..];
+    let numbers = |columns: std::ops::Range<usize>| {
+        last.iter().flat_map(move |row| row[columns.clone()].iter().map(|cell| cell.parse::<f64>().unwrap()))
+    };
+    let mut hash = 0xcbf29ce484222325_u64;
+    for byte in numbers(3..6).chain(numbers(6..9)).flat_map(f64::to_le_bytes) {
+        hash = (hash ^ u64::from(byte)).wrapping_mul(0x100000001b3);
+    }
+    let result: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(result["hash"].as_str().unwrap(), format!("{hash:016x}"));
+    // Recording changes nothing.
+    assert_eq!(json(&["run", "race", "--for", "1.5"])["hash"], result["hash"]);
+}
+
+#[test]
+fn a_recording_goes_to_standard_output_and_takes_every_step() {
+    let output = wriggle(&["run", "garden", "--for", "0.005", "--record", "-"]);
+    assert_eq!(stdout(&output).lines().count(), 1 + 11 * 3);
+    assert!(stderr(&output).contains("garden: 10 steps"), "{}", stderr(&output));
+}
+
+#[test]
+fn bad_input_exits_with_2_and_says_what_is_right() {
+    for (arguments, words) in [
+        (&["run", "garden", "--for", "1.0003"][..], &["--for 1.0003", "1 and 1.0005"][..]),
+        (&["run", "garden", "--for", "-1"], &["-1"]),
+        (&["run", "garden", "--for=-1"], &["--for", "0 or more"]),
+        (&["run", "garden", "--for", "1e300"], &["--for", "whole number"]),
+        (&["run", "garden", "--dt", "0"], &["--dt", "above 0"]),
+        (&["run", "garden", "--dt", "fast"], &["--dt", "above 0"]),
+        (&["run", "garden", "--method", "Leapfrog"], &["Leapfrog", "SemiImplicitEuler", "RungeKutta4"]),
+        (&["run", "garden", "--set", "worm.springs.stiffness"], &["PATH=VALUE"]),
+        (&["run", "garden", "--set", "worm.springs.stiffness=x"], &["`x` is no number"]),
+        (&["run", "garden", "--set", "worm.springs.stiffness=-1"], &["worm.springs.stiffness: -1", "0 or more"]),
+        (&["run", "garden", "--set", "worm.springs.stifness=1"], &["did you mean worm.springs.stiffness"]),
+        (&["run", "garden", "--every", "1"], &["--record"]),
+        (&["run", "garden", "--record", "-", "--every", "0.0007"], &["--every 0.0007", "0.0005 and 0.001"]),
+        (&["run", "garden", "--record", "-", "--json"], &["--json and --record -"]),
+        (&["run", "garden", "--for", "1", "--record", "/nowhere/r.csv"], &["/nowhere/r.csv"]),
+        (&["run", "garden", "--threads", "0"], &["--threads"]),
+        (&["run", "gardn"], &["no scene `gardn`", "did you mean garden?", "assets/scenes/gardn.scene.ron"]),
+        (&["run", "nowhere.creature.ron"], &["no creature `nowhere.creature.ron`"]),
+        (&["run"], &["SCENE"]),
+        (&["list", "--paths", "gardn"], &["did you mean garden?"]),
+        (&["gardn"], &["did you mean garden?"]),
+    ] {
+        let output = wriggle(arguments);
+        let said = stderr(&output);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {said}");
+        assert!(output.stdout.is_empty(), "{arguments:?}");
+        for word in words {
+            assert!(said.contains(word), "{arguments:?}: `{word}` is missing in: {said}");
+        }
+    }
+}
+
+#[test]
+fn a_bad_file_is_reported_with_its_place() {
+    let folder = TempDir::new().unwrap();
+    fs::write(folder.path().join("bad.creature.ron"), "Creature(version: 1,\n  body: GardenWorm(mass: 0))").unwrap();
+    let output = in_folder(folder.path(), &["run", "bad.creature.ron"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).starts_with("error: bad.creature.ron:2:"), "{}", stderr(&output));
+    assert!(stderr(&output).contains("mass: 0 is not allowed; give a finite number above 0"), "{}", stderr(&output));
+}
+
+#[test]
+fn a_frozen_body_is_said_and_exits_with_1() {
+    let output = wriggle(&["run", "race", "--dt", "2", "--for", "200", "--json"]);
+    assert_eq!(output.status.code(), Some(1));
+    let said = stderr(&output);
+    assert!(said.contains("stability limit of `plain`") && said.contains("plain: particle"), "{said}");
+    let result: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!((result["steps"].as_u64(), result["bodies"][0]["status"].as_str()), (Some(100), Some("frozen")));
+}
+
+#[test]
+fn files_are_found_as_given_then_under_assets_then_embedded() {
+    let folder = TempDir::new().unwrap();
+    let title = |file: &str, stiffness: u32| {
+        let path = folder.path().join(file);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(path, format!("Creature(version: 1, body: GardenWorm(stiffness: {stiffness}))")).unwrap();
+    };
+    let stiffness = || {
+        let output = in_folder(folder.path(), &["list", "--paths", "garden-worm"]);
+        let table = stdout(&output);
+        let line = table.lines().find(|line| line.starts_with("garden-worm.springs.stiffness")).expect("a stiffness");
+        line.split_whitespace().nth(1).unwrap().to_owned()
+    };
+    assert_eq!(stiffness(), "1.5");
+    title("assets/creatures/garden-worm.creature.ron", 8);
+    assert_eq!(stiffness(), "8");
+    title("garden-worm.creature.ron", 9);
+    assert_eq!(stiffness(), "9");
+    // A folder of the same name is no file.
+    fs::create_dir(folder.path().join("garden")).unwrap();
+    assert_eq!(in_folder(folder.path(), &["run", "garden", "--for", "0"]).status.code(), Some(0));
+}
+
+#[test]
+fn list_names_scenes_creatures_methods_and_paths() {
+    let all = stdout(&wriggle(&["list"]));
+    for word in ["garden  ", "Garden", "race  ", "garden-worm", "SemiImplicitEuler", "RungeKutta4"] {
+        assert!(all.contains(word), "`{word}` is missing in {all}");
+    }
+    let paths = stdout(&wriggle(&["list", "--paths", "garden"]));
+    for word in ["worm.springs[1].stiffness", "worm.muscles.amplitude", "clock.dt", "0.0005", "0 to 10", "force/length"]
+    {
+        assert!(paths.contains(word), "`{word}` is missing in {paths}");
+    }
+}
+
+#[test]
+fn a_closed_pipe_ends_quietly() {
+    let mut run = Command::new(env!("CARGO_BIN_EXE_wriggle"))
+        .args(["run", "garden", "--record", "-"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    drop(run.stdout.take());
+    let output = run.wait_with_output().unwrap();
+    assert_eq!((output.status.code(), stderr(&output).as_str()), (Some(0), ""));
+}
+
+#[test]
+fn play_without_a_display_runs_the_garden_headless() {
+    let output = Command::new(env!("CARGO_BIN_EXE_wriggle"))
+        .env_remove("DISPLAY")
+        .env_remove("WAYLAND_DISPLAY")
+        .env_remove("WAYLAND_SOCKET")
+        .output()
+        .unwrap();
+    if cfg!(all(feature = "window", not(all(unix, not(target_os = "macos"))))) {
+        return;
+    }
+    assert_eq!(output.status.code(), Some(0));
+    assert_eq!(stderr(&output).lines().count(), 1, "{}", stderr(&output));
+    let said = stdout(&output);
+    assert!(said.contains("t =  0.0") && said.contains("t = 60.0") && said.contains("before its door"), "{said}");
+}
