@@ -69,6 +69,14 @@ impl Quality {
         }
     }
 
+    /// Of how many sides far round things are.
+    pub(super) fn roundness(self) -> usize {
+        match self {
+            Self::Low => 10,
+            Self::High => 18,
+        }
+    }
+
     /// How many flowers stand in the grass.
     pub(super) fn meadow_flowers(self) -> usize {
         match self {

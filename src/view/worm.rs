@@ -14,15 +14,15 @@ use crate::{body::Springs, physics::Shown, scenes::SceneMember};
 /// The radius of an ellipsoid at rest, in rest lengths of the springs.
 const RADIUS: f32 = 0.37;
 /// Half the length of an ellipsoid at rest, in rest lengths: neighbours overlap, so that the body is of one piece.
-const HALF_LENGTH: f32 = 0.7;
+const HALF_LENGTH: f32 = 0.63;
 /// How much the worm is lifted off the path: it lies on gravel.
 const CLEARANCE: f32 = 0.03;
 /// Where on an ellipsoid rings sit, in half lengths from its middle.
 const RINGS: [f32; 3] = [-0.4, 0.0, 0.4];
 
-const SKIN: u32 = 0xf29a9a;
-const BELLY: u32 = 0xffd2bd;
-const RING: u32 = 0xff7a12;
+const SKIN: u32 = 0xf0848c;
+const BELLY: u32 = 0xffc9b0;
+const RING: u32 = 0xff6a00;
 
 /// What the parts of a worm are made of; shared by all worms.
 pub(super) struct WormKit {
@@ -293,7 +293,7 @@ fn feeler() -> Mesh {
 fn blot() -> Mesh {
     let mut clay = Clay::default();
     clay.grid(25, 5, |spoke, ring| {
-        let around = TAU * spoke as f32 / 24.0;
+        let around = -TAU * spoke as f32 / 24.0;
         let out = ring as f32 / 4.0;
         let alpha = 0.62 * (1.0 - out * out).powi(2);
         (Vec3::new(around.cos() * out, 0.0, around.sin() * out), Vec3::Y, [0.03, 0.025, 0.01, alpha])

@@ -104,9 +104,9 @@ fn walls(clay: &mut Clay) {
             (DOOR_HALF_WIDTH * turn.cos(), DOOR_SPRING + DOOR_HALF_WIDTH * turn.sin())
         }
     };
-    let depths = [(0.0, 0.55), (WALL, 0.2), (WALL + 0.35, 0.03), (WALL + 0.7, 0.006)];
+    let depths = [(0.0, 0.5), (WALL, 0.12), (WALL + 0.3, 0.012), (WALL + 0.7, 0.004)];
     clay.grid(depths.len(), steps + 1, |row, column| {
-        let ((z, y), (deep, light)) = (arch(column), depths[row]);
+        let ((z, y), (deep, light)) = (arch(steps - column), depths[row]);
         let inward = Vec3::new(0.0, 0.6 - y, -z).normalize_or(Vec3::Y);
         (Vec3::new(FRONT + deep, y, z), inward, shade(tint(PLASTER), light))
     });
@@ -117,7 +117,7 @@ fn walls(clay: &mut Clay) {
         dark,
     );
     clay.grid(depths.len(), 2, |row, column| {
-        let z = if column == 0 { DOOR_HALF_WIDTH } else { -DOOR_HALF_WIDTH };
+        let z = if column == 0 { -DOOR_HALF_WIDTH } else { DOOR_HALF_WIDTH };
         (Vec3::new(FRONT + depths[row].0, 0.03, z), Vec3::Y, shade(tint(0x8a7a62), depths[row].1))
     });
 }
@@ -141,7 +141,7 @@ fn timber(clay: &mut Clay) {
     beam(Vec3::new(x, EAVES, -0.62), Vec3::new(x, gable(0.62), -0.62), 0.1);
     for z in [-SIDE, SIDE] {
         for x in [FRONT, BACK] {
-            beam(Vec3::new(x, 0.0, z), Vec3::new(x, EAVES + 0.1, z), 0.17);
+            beam(Vec3::new(x, 0.0, z), Vec3::new(x, EAVES - 0.02, z), 0.17);
         }
         beam(Vec3::new(12.25, 0.0, z), Vec3::new(12.25, EAVES, z), 0.1);
         beam(Vec3::new(FRONT, EAVES - 0.06, z), Vec3::new(BACK, EAVES - 0.06, z), 0.13);

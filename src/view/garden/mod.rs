@@ -40,6 +40,7 @@ pub(super) fn plant(
     let mut random = SmallRng::seed_from_u64(seed);
     let mut triangles = 0;
     let mut spawn = |clay: Clay, paint: Paint, casts: bool| {
+
         triangles += clay.triangles();
         let mut thing =
             commands.spawn((SceneMember, Decor, Mesh3d(meshes.add(clay.fire())), MeshMaterial3d(paints.add(paint))));
@@ -56,7 +57,7 @@ pub(super) fn plant(
         false,
     );
     spawn(backdrop::hills(&mut random), Paint::matte(false), false);
-    spawn(backdrop::trees(&mut random), Paint::matte(shadows), true);
+    spawn(backdrop::trees(&mut random, quality), Paint::matte(shadows), true);
     spawn(backdrop::fence(&mut random), Paint::matte(shadows), true);
     spawn(lawn::lawn(quality), Paint::matte(shadows), false);
     spawn(path::path(&mut random), Paint::matte(shadows), true);
