@@ -3,8 +3,7 @@
 use bevy::prelude::*;
 use bevy_panorbit_camera::{PanOrbitCamera, PanOrbitCameraPlugin, PanOrbitCameraSystemSet, TrackpadBehavior};
 
-use super::offscreen::OffscreenTarget;
-use super::quality::Quality;
+use super::{half::HalfResolution, offscreen::OffscreenTarget, quality::Quality};
 use crate::{
     creatures::Look,
     physics::Shown,
@@ -47,7 +46,7 @@ fn spawn(quality: Res<Quality>, target: Option<Res<OffscreenTarget>>, mut comman
         Camera3d::default(),
         quality.msaa(),
         bevy::core_pipeline::tonemapping::Tonemapping::None,
-        Projection::from(PerspectiveProjection { fov: 38_f32.to_radians(), near: 0.1, far: 400.0, ..default() }),
+        Projection::from(PerspectiveProjection { fov: 42_f32.to_radians(), near: 0.1, far: 400.0, ..default() }),
         PanOrbitCamera {
             pitch_lower_limit: Some(0.03),
             pitch_upper_limit: Some(1.5),
@@ -60,8 +59,11 @@ fn spawn(quality: Res<Quality>, target: Option<Res<OffscreenTarget>>, mut comman
             ..default()
         },
     ));
-    if let Some(target) = target {
-        camera.insert(target.0.clone());
+    match target {
+        Some(target) => _ = camera.insert(target.0.clone()),
+        // A picture is worth its full resolution; a window must keep moving.
+        None if *quality == Quality::Low => _ = camera.insert(HalfResolution),
+        None => {}
     }
 }
 

@@ -69,6 +69,14 @@ impl Quality {
         }
     }
 
+    /// How many pebbles lie on the path.
+    pub(super) fn pebbles(self) -> usize {
+        match self {
+            Self::Low => 330,
+            Self::High => 900,
+        }
+    }
+
     /// Of how many sides far round things are.
     pub(super) fn roundness(self) -> usize {
         match self {

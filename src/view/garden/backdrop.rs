@@ -66,22 +66,26 @@ pub(super) fn hills(random: &mut SmallRng) -> Clay {
     clay
 }
 
-/// Round trees and tall ones behind the garden.
-pub(super) fn trees(random: &mut SmallRng, quality: Quality) -> Clay {
-    let mut clay = Clay::default();
-    for i in 0..46 {
-        let around = TAU * (i as f32 + between(random, -0.45, 0.45)) / 46.0;
+/// How many trees stand around the garden, and into how many meshes they go, so that those behind the viewer cost nothing.
+const TREES: usize = 46;
+const SECTORS: usize = 8;
+
+/// Round trees all around the garden.
+pub(super) fn trees(random: &mut SmallRng, quality: Quality) -> Vec<Clay> {
+    let mut sectors: Vec<_> = (0..SECTORS).map(|_| Clay::default()).collect();
+    for i in 0..TREES {
+        let around = TAU * (i as f32 + between(random, -0.45, 0.45)) / TREES as f32;
         // In front of the camera's usual place it stays open.
         let front = around.sin().max(0.0);
         let out = between(random, 21.0, 44.0) + 16.0 * front;
         let (x, z) = (MIDDLE.x + around.cos() * out, around.sin() * out);
-        tree(&mut clay, Vec3::new(x, lawn::height(x, z) - 0.1, z), between(random, 0.8, 1.45), quality.roundness(), random);
+        tree(&mut sectors[i * SECTORS / TREES], Vec3::new(x, lawn::height(x, z) - 0.1, z), between(random, 0.8, 1.45), quality.roundness(), random);
     }
     // Three old friends that frame the house.
     for (x, z, size) in [(17.2, -4.2, 1.15), (-7.6, -6.2, 1.0), (1.2, -9.6, 0.85)] {
-        tree(&mut clay, Vec3::new(x, lawn::height(x, z) - 0.05, z), size, quality.roundness() + 4, random);
+        tree(&mut sectors[SECTORS * 3 / 4], Vec3::new(x, lawn::height(x, z) - 0.05, z), size, quality.roundness() + 4, random);
     }
-    clay
+    sectors
 }
 
 fn tree(clay: &mut Clay, foot: Vec3, size: f32, sides: usize, random: &mut SmallRng) {

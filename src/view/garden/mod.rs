@@ -57,10 +57,12 @@ pub(super) fn plant(
         false,
     );
     spawn(backdrop::hills(&mut random), Paint::matte(false), false);
-    spawn(backdrop::trees(&mut random, quality), Paint::matte(shadows), true);
+    for sector in backdrop::trees(&mut random, quality) {
+        spawn(sector, Paint::matte(shadows), true);
+    }
     spawn(backdrop::fence(&mut random), Paint::matte(shadows), true);
     spawn(lawn::lawn(quality), Paint::matte(shadows), false);
-    spawn(path::path(&mut random), Paint::matte(shadows), true);
+    spawn(path::path(&mut random, quality), Paint::matte(shadows), true);
     spawn(burrow::burrow(&mut random), Paint::matte(shadows), true);
     spawn(house::house(&mut random), Paint::matte(shadows), true);
     spawn(house::panes(), Paint::glossy(shadows, 1.0), false);
