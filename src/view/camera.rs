@@ -1,6 +1,6 @@
 //! The camera: orbit, pan, zoom, and following the worm.
 
-use bevy::prelude::*;
+use bevy::{light::cluster::ClusterConfig, prelude::*, render::view::NoIndirectDrawing};
 use bevy_panorbit_camera::{PanOrbitCamera, PanOrbitCameraPlugin, PanOrbitCameraSystemSet, TrackpadBehavior};
 
 use super::{half::HalfResolution, offscreen::OffscreenTarget, quality::Quality};
@@ -59,6 +59,10 @@ fn spawn(quality: Res<Quality>, target: Option<Res<OffscreenTarget>>, mut comman
             ..default()
         },
     ));
+    if *quality == Quality::Low {
+        // What a GPU sorts and culls for us costs a software renderer more than it saves.
+        camera.insert((NoIndirectDrawing, ClusterConfig::Single));
+    }
     match target {
         Some(target) => _ = camera.insert(target.0.clone()),
         // A picture is worth its full resolution; a window must keep moving.

@@ -119,7 +119,13 @@ impl Clay {
 
     /// A surface of revolution about `place`'s y axis: `profile` lists radius and height from the bottom up (outside to the right).
     /// Gentle turns of the profile are shaded round, sharp ones as edges.
-    pub fn lathe(&mut self, place: Transform, profile: &[(f32, f32)], sides: usize, color: impl Fn(usize, f32) -> Tint) {
+    pub fn lathe(
+        &mut self,
+        place: Transform,
+        profile: &[(f32, f32)],
+        sides: usize,
+        color: impl Fn(usize, f32) -> Tint,
+    ) {
         let slopes: Vec<Vec2> = profile
             .windows(2)
             .map(|pair| Vec2::new(pair[1].1 - pair[0].1, pair[0].0 - pair[1].0).normalize_or(Vec2::X))

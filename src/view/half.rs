@@ -12,13 +12,13 @@ use bevy::{
         extract_component::{ExtractComponent, ExtractComponentPlugin},
         render_resource::{
             BindGroup, BindGroupEntries, BindGroupLayoutDescriptor, BindGroupLayoutEntries, CachedRenderPipelineId,
-            ColorTargetState, ColorWrites, FilterMode, FragmentState, Operations, PipelineCache, RenderPassColorAttachment,
-            RenderPassDescriptor, RenderPipelineDescriptor, Sampler, SamplerBindingType, SamplerDescriptor, ShaderStages,
-            TextureFormat, TextureSampleType, TextureViewId, VertexState,
+            ColorTargetState, ColorWrites, FilterMode, FragmentState, Operations, PipelineCache,
+            RenderPassColorAttachment, RenderPassDescriptor, RenderPipelineDescriptor, Sampler, SamplerBindingType,
+            SamplerDescriptor, ShaderStages, TextureFormat, TextureSampleType, TextureViewId, VertexState,
             binding_types::{sampler, texture_2d},
         },
-        sync_component::SyncComponent,
         renderer::{RenderContext, RenderDevice, ViewQuery},
+        sync_component::SyncComponent,
         view::ViewTarget,
     },
 };
@@ -29,9 +29,7 @@ pub(super) fn plugin(app: &mut App) {
     load_internal_asset!(app, SHADER, "half.wgsl", Shader::from_wgsl);
     app.add_plugins(ExtractComponentPlugin::<HalfResolution>::default());
     if let Some(render) = app.get_sub_app_mut(RenderApp) {
-        render
-            .add_systems(RenderStartup, prepare)
-            .add_systems(Core3d, spread.in_set(Core3dSystems::PostProcess));
+        render.add_systems(RenderStartup, prepare).add_systems(Core3d, spread.in_set(Core3dSystems::PostProcess));
     }
 }
 
@@ -61,11 +59,7 @@ struct Spreading {
     vertex: VertexState,
 }
 
-fn prepare(
-    device: Res<RenderDevice>,
-    fullscreen: Res<FullscreenShader>,
-    mut commands: Commands,
-) {
+fn prepare(device: Res<RenderDevice>, fullscreen: Res<FullscreenShader>, mut commands: Commands) {
     let layout = BindGroupLayoutDescriptor::new(
         "half_resolution_layout",
         &BindGroupLayoutEntries::sequential(

@@ -26,7 +26,7 @@ const KEYS: [(&str, &str); 8] = [
     ("Wheel", "nearer, further"),
     ("C", "follow the worm"),
     ("Space", "pause"),
-    (".", "one tick"),
+    (". (dot)", "one tick"),
     ("R", "start again"),
     ("H", "hide this"),
 ];

@@ -31,11 +31,14 @@ pub(in crate::view) fn sky() -> Clay {
 }
 
 /// Heaps of soft balls with flat feet.
-pub(super) fn clouds(random: &mut SmallRng) -> Clay {
+pub(super) fn clouds(random: &mut SmallRng, quality: Quality) -> Clay {
     let mut clay = Clay::default();
     for i in 0..13 {
         let around = TAU * (i as f32 + between(random, -0.3, 0.3)) / 13.0;
-        let (out, up) = (between(random, 95.0, 135.0), if i % 3 == 0 { between(random, 30.0, 50.0) } else { between(random, 12.0, 24.0) });
+        let (out, up) = (
+            between(random, 95.0, 135.0),
+            if i % 3 == 0 { between(random, 30.0, 50.0) } else { between(random, 12.0, 24.0) },
+        );
         let at = Vec3::new(around.cos() * out, up, around.sin() * out);
         let across = Vec3::new(-around.sin(), 0.0, around.cos());
         let size = between(random, 2.6, 4.6);
@@ -44,14 +47,14 @@ pub(super) fn clouds(random: &mut SmallRng) -> Clay {
             let big = size * (1.15 - 0.75 * t * t) * between(random, 0.75, 1.1);
             let place = at + across * (t * size * 3.1) + Vec3::Y * between(random, 0.0, big * 0.35);
             let flat = Transform::from_translation(place).with_scale(Vec3::new(big, big * 0.72, big));
-            clay.ball(flat, 12, |direction| shade(tint(0xfbfcff), 0.86 + 0.2 * direction.y));
+            clay.ball(flat, quality.roundness(), |direction| shade(tint(0xfbfcff), 0.86 + 0.2 * direction.y));
         }
     }
     clay
 }
 
 /// Two rows of hills, the further the paler.
-pub(super) fn hills(random: &mut SmallRng) -> Clay {
+pub(super) fn hills(random: &mut SmallRng, quality: Quality) -> Clay {
     let mut clay = Clay::default();
     for (count, out, low, high, code) in [(15, 118.0, 8.0, 14.0, 0x6f9a6a_u32), (13, 84.0, 4.0, 8.0, 0x6fa54a)] {
         for i in 0..count {
@@ -60,7 +63,7 @@ pub(super) fn hills(random: &mut SmallRng) -> Clay {
                 Vec3::new(between(random, 24.0, 38.0), between(random, low, high), between(random, 24.0, 38.0)),
             );
             let color = shade(tint(code), between(random, 0.85, 1.1));
-            clay.ball(place, 24, |direction| shade(color, 0.6 + 0.4 * direction.y.max(0.0)));
+            clay.ball(place, quality.roundness() + 6, |direction| shade(color, 0.6 + 0.4 * direction.y.max(0.0)));
         }
     }
     clay
@@ -79,11 +82,23 @@ pub(super) fn trees(random: &mut SmallRng, quality: Quality) -> Vec<Clay> {
         let front = around.sin().max(0.0);
         let out = between(random, 21.0, 44.0) + 16.0 * front;
         let (x, z) = (MIDDLE.x + around.cos() * out, around.sin() * out);
-        tree(&mut sectors[i * SECTORS / TREES], Vec3::new(x, lawn::height(x, z) - 0.1, z), between(random, 0.8, 1.45), quality.roundness(), random);
+        tree(
+            &mut sectors[i * SECTORS / TREES],
+            Vec3::new(x, lawn::height(x, z) - 0.1, z),
+            between(random, 0.8, 1.45),
+            quality.roundness(),
+            random,
+        );
     }
     // Three old friends that frame the house.
     for (x, z, size) in [(17.2, -4.2, 1.15), (-7.6, -6.2, 1.0), (1.2, -9.6, 0.85)] {
-        tree(&mut sectors[SECTORS * 3 / 4], Vec3::new(x, lawn::height(x, z) - 0.05, z), size, quality.roundness() + 4, random);
+        tree(
+            &mut sectors[SECTORS * 3 / 4],
+            Vec3::new(x, lawn::height(x, z) - 0.05, z),
+            size,
+            quality.roundness() + 4,
+            random,
+        );
     }
     sectors
 }

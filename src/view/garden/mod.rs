@@ -40,7 +40,6 @@ pub(super) fn plant(
     let mut random = SmallRng::seed_from_u64(seed);
     let mut triangles = 0;
     let mut spawn = |clay: Clay, paint: Paint, casts: bool| {
-
         triangles += clay.triangles();
         let mut thing =
             commands.spawn((SceneMember, Decor, Mesh3d(meshes.add(clay.fire())), MeshMaterial3d(paints.add(paint))));
@@ -52,11 +51,11 @@ pub(super) fn plant(
 
     let sky = spawn(backdrop::sky(), Paint::glowing(), false);
     spawn(
-        backdrop::clouds(&mut random),
+        backdrop::clouds(&mut random, quality),
         Paint { finish: Vec4::new(0.0, 0.0, 0.0, 0.25), ..Paint::matte(false) },
         false,
     );
-    spawn(backdrop::hills(&mut random), Paint::matte(false), false);
+    spawn(backdrop::hills(&mut random, quality), Paint::matte(false), false);
     for sector in backdrop::trees(&mut random, quality) {
         spawn(sector, Paint::matte(shadows), true);
     }

@@ -67,7 +67,7 @@ pub(super) fn path(random: &mut SmallRng, quality: Quality) -> Clay {
             let z = side * (half_width(x) + between(random, 0.02, 0.1));
             let size = Vec3::new(length, length * between(random, 0.5, 0.75), length * between(random, 0.6, 0.85));
             let color = stone(random);
-            pebble(&mut clay, Vec3::new(x, 0.03, z), size, 9, color, random);
+            pebble(&mut clay, Vec3::new(x, 0.03, z), size, 8, color, random);
             x += length * between(random, 1.7, 2.6);
         }
     }
