@@ -3,7 +3,7 @@
 use bevy::{light::cluster::ClusterConfig, prelude::*, render::view::NoIndirectDrawing};
 use bevy_panorbit_camera::{PanOrbitCamera, PanOrbitCameraPlugin, PanOrbitCameraSystemSet, TrackpadBehavior};
 
-use super::{half::HalfResolution, offscreen::OffscreenTarget, quality::Quality};
+use super::{half::HalfResolution, help::typing, offscreen::OffscreenTarget, quality::Quality};
 use crate::{
     creatures::Look,
     physics::Shown,
@@ -36,7 +36,10 @@ pub(super) fn plugin(app: &mut App) {
         .init_resource::<PointerOnPanel>()
         .init_resource::<FollowWorm>()
         .add_systems(Startup, spawn)
-        .add_systems(Update, (take_place.run_if(resource_exists_and_changed::<CurrentScene>), toggle).chain())
+        .add_systems(
+            Update,
+            (take_place.run_if(resource_exists_and_changed::<CurrentScene>), toggle.run_if(not(typing))).chain(),
+        )
         .add_systems(PostUpdate, (leave_to_panel, follow).chain().before(PanOrbitCameraSystemSet));
 }
 

@@ -4,6 +4,7 @@ use bevy::prelude::*;
 use bevy_egui::{
     EguiContexts, EguiPlugin, EguiPrimaryContextPass,
     egui::{self, Align2, Color32, RichText},
+    input::EguiWantsInput,
 };
 
 use super::camera::FollowWorm;
@@ -35,7 +36,14 @@ pub(super) fn plugin(app: &mut App) {
     if !app.is_plugin_added::<EguiPlugin>() {
         app.add_plugins(EguiPlugin::default());
     }
-    app.init_resource::<KeyHelp>().add_systems(Update, toggle).add_systems(EguiPrimaryContextPass, write);
+    app.init_resource::<KeyHelp>()
+        .add_systems(Update, toggle.run_if(not(typing)))
+        .add_systems(EguiPrimaryContextPass, write);
+}
+
+/// Whether keys go into a panel's text field.
+pub(super) fn typing(wants: Option<Res<EguiWantsInput>>) -> bool {
+    wants.is_some_and(|wants| wants.wants_any_keyboard_input())
 }
 
 fn toggle(keys: Res<ButtonInput<KeyCode>>, mut help: ResMut<KeyHelp>) {

@@ -97,7 +97,7 @@ fn fragment(in: VertexOutput, @builtin(front_facing) front: bool) -> @location(0
         color = albedo * light + SUN * shine * 0.35 + SKY * rim;
         if (paint.shelter.z > 0.0) {
             let x = in.world_position.x;
-            let inside = (1.0 - smoothstep(paint.shelter.x - 0.7, paint.shelter.x, x))
+            let inside = (1.0 - smoothstep(paint.shelter.x - 0.2, paint.shelter.x + 0.35, x))
                 + smoothstep(paint.shelter.y, paint.shelter.y + 0.7, x);
             let near = step(abs(in.world_position.z), paint.shelter.z);
             color *= 1.0 - 0.97 * min(inside, 1.0) * near;

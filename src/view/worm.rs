@@ -300,3 +300,34 @@ fn blot() -> Mesh {
     });
     clay.fire()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_ellipsoid_keeps_its_volume_while_it_stretches() {
+        let volume = |gap: f32| {
+            let positions = [Vec3::ZERO, Vec3::X * gap, Vec3::X * 2.0 * gap];
+            let it = Segment::of(1, &positions, 1.0);
+            (it.half_length * it.radius * it.radius, it.radius)
+        };
+        let (rest, thick) = volume(1.0);
+        for gap in [0.72, 0.9, 1.31] {
+            let (volume, radius) = volume(gap);
+            assert!((volume / rest - 1.0).abs() < 1e-5, "at {gap}: {volume} and not {rest}");
+            assert_eq!(radius > thick, gap < 1.0, "a short segment is thick");
+        }
+    }
+
+    #[test]
+    fn an_ellipsoid_lies_on_the_path_whatever_the_heading() {
+        for heading in [0.0, 0.7, 2.0, -1.5, PI] {
+            let forward = Quat::from_rotation_y(heading) * Vec3::X;
+            let it = Segment::of(2, &[Vec3::ZERO, forward, forward * 2.0], 1.0);
+            assert!((it.turn * Vec3::X).distance(forward) < 1e-5);
+            assert!((it.turn * Vec3::Y).distance(Vec3::Y) < 1e-5, "it stays upright at {heading}");
+            assert!((it.middle.y - it.radius - CLEARANCE).abs() < 1e-5);
+        }
+    }
+}

@@ -159,7 +159,7 @@ fn small_flower(clay: &mut Clay, foot: Vec3, top: Vec3, size: f32, petals: Tint)
     let ring: Vec<u32> = (0..=count)
         .map(|i| {
             let around = TAU * i as f32 / count as f32;
-            let out = if i % 2 == 0 { 1.15 } else { 0.6 };
+            let out = if i % 2 == 0 { 1.15 } else { 0.72 };
             let at = top + tilt * Vec3::new(around.cos() * size * out, 0.0, -around.sin() * size * out);
             clay.vertex(at, Vec3::Y, swaying(petals, reach))
         })
