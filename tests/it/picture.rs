@@ -15,7 +15,7 @@ const SIZE: (u32, u32) = (320, 180);
 /// Builds the garden, without a window, as it is at time 0.
 fn garden() -> Result<Shot, ShotError> {
     Shot::new(SIZE, Some(Quality::Low), |app| {
-        let camera = scenes::Camera::Orbit { target: (4.8, 1.9, 0.0), distance: 16.5, pitch: 10.0, yaw: 6.0 };
+        let camera = scenes::Camera::Orbit { target: (5.0, 1.3, 0.0), distance: 16.5, pitch: 11.0, yaw: -14.0 };
         app.add_plugins(PhysicsPlugin).insert_resource(CurrentScene {
             file: SceneFile {
                 title: "Garden".into(),
