@@ -2,7 +2,7 @@
 //!
 //! [`ViewPlugin`] is added beside Bevy's `DefaultPlugins` and [`PhysicsPlugin`](crate::physics::PhysicsPlugin). It draws every body
 //! that has a [`Look`](crate::creatures::Look), where [`Shown`](crate::physics::Shown) says, and rebuilds the surroundings when
-//! [`CurrentScene`](crate::scenes::CurrentScene) changes. [`Shot`] draws pictures without a window.
+//! [`CurrentScene`] changes. [`Shot`] draws pictures without a window.
 
 mod adapter;
 mod camera;
@@ -19,6 +19,7 @@ mod skins;
 mod studio;
 mod window;
 mod worm;
+mod worm_parts;
 
 use bevy::{prelude::*, render::renderer::RenderAdapterInfo, winit::WinitPlugin};
 

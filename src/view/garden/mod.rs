@@ -10,6 +10,7 @@ mod grass;
 mod house;
 mod lawn;
 mod path;
+mod roof;
 
 use bevy::{camera::visibility::NoFrustumCulling, light::NotShadowCaster, prelude::*};
 use rand::{RngExt, SeedableRng, rngs::SmallRng};
