@@ -21,7 +21,6 @@ const SMOOTHING: f64 = 0.08;
 #[derive(Debug, Default, Resource)]
 pub(super) struct Meter {
     physics: f64,
-    step: u64,
     steps_per_tick: u64,
 }
 
@@ -42,10 +41,11 @@ pub(super) fn tick(
     mut traces: ResMut<Traces>,
     mut meter: ResMut<Meter>,
 ) {
-    meter.physics += cost.map_or(0.0, |cost| cost.seconds);
+    if let Some(cost) = cost {
+        meter.physics += cost.seconds;
+        meter.steps_per_tick = cost.steps;
+    }
     let Some(clock) = clock else { return };
-    meter.steps_per_tick = clock.step().saturating_sub(meter.step);
-    meter.step = clock.step();
     let Some(body) = settings.body().map(|body| body.entity) else { return };
     let Ok((particles, springs, muscles, friction, start)) = bodies.get(body) else { return };
     let start = start.map_or_else(|| particles.center(), |start| start.0.center());

@@ -10,6 +10,8 @@ mod files;
 mod friction;
 mod garden_worm;
 mod laws;
+#[cfg(feature = "window")]
+mod panel;
 mod parameters;
 mod saving;
 mod stability;
