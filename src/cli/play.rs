@@ -49,10 +49,9 @@ fn open_window(_: scenes::LoadedScene) -> Result<Outcome, CliError> {
 fn open_window(scene: scenes::LoadedScene) -> Result<Outcome, CliError> {
     use bevy::prelude::*;
 
-    let window = Window { title: format!("{} – Wriggle", scene.file.title), ..default() };
     let mut app = App::new();
-    app.add_plugins(DefaultPlugins.set(WindowPlugin { primary_window: Some(window), ..default() }));
     app.add_plugins((
+        view::window_plugins(),
         PhysicsPlugin::default(),
         ScenesPlugin::new(scene),
         WatchPlugin,

@@ -1,10 +1,9 @@
 //! The camera: orbit, pan, zoom, and following the worm.
 
-use bevy::prelude::*;
+use bevy::{light::cluster::ClusterConfig, prelude::*, render::view::NoIndirectDrawing};
 use bevy_panorbit_camera::{PanOrbitCamera, PanOrbitCameraPlugin, PanOrbitCameraSystemSet, TrackpadBehavior};
 
-use super::offscreen::OffscreenTarget;
-use super::quality::Quality;
+use super::{half::HalfResolution, help::typing, offscreen::OffscreenTarget, quality::Quality};
 use crate::{
     creatures::Look,
     physics::Shown,
@@ -37,7 +36,10 @@ pub(super) fn plugin(app: &mut App) {
         .init_resource::<PointerOnPanel>()
         .init_resource::<FollowWorm>()
         .add_systems(Startup, spawn)
-        .add_systems(Update, (take_place.run_if(resource_exists_and_changed::<CurrentScene>), toggle).chain())
+        .add_systems(
+            Update,
+            (take_place.run_if(resource_exists_and_changed::<CurrentScene>), toggle.run_if(not(typing))).chain(),
+        )
         .add_systems(PostUpdate, (leave_to_panel, follow).chain().before(PanOrbitCameraSystemSet));
 }
 
@@ -47,7 +49,7 @@ fn spawn(quality: Res<Quality>, target: Option<Res<OffscreenTarget>>, mut comman
         Camera3d::default(),
         quality.msaa(),
         bevy::core_pipeline::tonemapping::Tonemapping::None,
-        Projection::from(PerspectiveProjection { fov: 38_f32.to_radians(), near: 0.1, far: 400.0, ..default() }),
+        Projection::from(PerspectiveProjection { fov: 42_f32.to_radians(), near: 0.1, far: 400.0, ..default() }),
         PanOrbitCamera {
             pitch_lower_limit: Some(0.03),
             pitch_upper_limit: Some(1.5),
@@ -60,8 +62,15 @@ fn spawn(quality: Res<Quality>, target: Option<Res<OffscreenTarget>>, mut comman
             ..default()
         },
     ));
-    if let Some(target) = target {
-        camera.insert(target.0.clone());
+    if *quality == Quality::Low {
+        // What a GPU sorts and culls for us costs a software renderer more than it saves.
+        camera.insert((NoIndirectDrawing, ClusterConfig::Single));
+    }
+    match target {
+        Some(target) => _ = camera.insert(target.0.clone()),
+        // A picture is worth its full resolution; a window must keep moving.
+        None if *quality == Quality::Low => _ = camera.insert(HalfResolution),
+        None => {}
     }
 }
 

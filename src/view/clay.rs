@@ -118,6 +118,7 @@ impl Clay {
     }
 
     /// A surface of revolution about `place`'s y axis: `profile` lists radius and height from the bottom up (outside to the right).
+    /// Gentle turns of the profile are shaded round, sharp ones as edges.
     pub fn lathe(
         &mut self,
         place: Transform,
@@ -125,12 +126,19 @@ impl Clay {
         sides: usize,
         color: impl Fn(usize, f32) -> Tint,
     ) {
+        let slopes: Vec<Vec2> = profile
+            .windows(2)
+            .map(|pair| Vec2::new(pair[1].1 - pair[0].1, pair[0].0 - pair[1].0).normalize_or(Vec2::X))
+            .collect();
         for (part, pair) in profile.windows(2).enumerate() {
-            let ((r0, h0), (r1, h1)) = (pair[0], pair[1]);
-            let (rise, out) = (h1 - h0, r1 - r0);
-            let slope = Vec2::new(rise, -out).normalize_or(Vec2::X);
+            let slope = slopes[part];
+            let round = |other: Option<&Vec2>| match other {
+                Some(&other) if other.dot(slope) > 0.7 => (slope + other).normalize(),
+                _ => slope,
+            };
+            let ends = [round(part.checked_sub(1).map(|before| &slopes[before])), round(slopes.get(part + 1))];
             self.grid(2, sides + 1, |row, column| {
-                let (radius, height) = if row == 0 { (r0, h0) } else { (r1, h1) };
+                let ((radius, height), slope) = (pair[row], ends[row]);
                 let around = TAU * column as f32 / sides as f32;
                 let spoke = Vec3::new(around.cos(), 0.0, -around.sin());
                 let normal = place.rotation * (spoke * slope.x + Vec3::Y * slope.y);

@@ -2,12 +2,14 @@
 //!
 //! [`ViewPlugin`] is added beside Bevy's `DefaultPlugins` and [`PhysicsPlugin`](crate::physics::PhysicsPlugin). It draws every body
 //! that has a [`Look`](crate::creatures::Look), where [`Shown`](crate::physics::Shown) says, and rebuilds the surroundings when
-//! [`CurrentScene`](crate::scenes::CurrentScene) changes. [`Shot`] draws pictures without a window.
+//! [`CurrentScene`] changes. [`Shot`] draws pictures without a window.
 
 mod adapter;
 mod camera;
 mod clay;
 mod garden;
+mod half;
+mod help;
 mod light;
 mod offscreen;
 mod paint;
@@ -15,14 +17,18 @@ mod plain;
 mod quality;
 mod skins;
 mod studio;
+mod window;
 mod worm;
+mod worm_parts;
 
-use bevy::{prelude::*, render::renderer::RenderAdapterInfo};
+use bevy::{prelude::*, render::renderer::RenderAdapterInfo, winit::WinitPlugin};
 
 pub use adapter::{AdapterSummary, NoAdapter, adapter, display_available};
 pub use camera::{FollowWorm, PointerOnPanel, SceneCamera};
+pub use help::KeyHelp;
 pub use offscreen::{Picture, Shot, ShotError};
 pub use quality::Quality;
+pub use window::window_plugins;
 
 use crate::scenes::{CurrentScene, Props};
 
@@ -35,9 +41,12 @@ pub struct ViewPlugin {
 
 impl Plugin for ViewPlugin {
     fn build(&self, app: &mut App) {
-        app.add_plugins((paint::plugin, camera::plugin, skins::plugin))
+        app.add_plugins((paint::plugin, half::plugin, camera::plugin, skins::plugin))
             .insert_resource(ClearColor(Color::srgb(0.72, 0.87, 0.95)))
             .add_systems(Update, decorate.run_if(resource_exists_and_changed::<CurrentScene>));
+        if app.is_plugin_added::<WinitPlugin>() {
+            app.add_plugins(help::plugin);
+        }
     }
 
     /// The adapter is known only now.

@@ -21,8 +21,8 @@ struct Paint {
 
 @group(#{MATERIAL_BIND_GROUP}) @binding(0) var<uniform> paint: Paint;
 
-const SUN: vec3<f32> = vec3(2.25, 1.92, 1.45);
-const SKY: vec3<f32> = vec3(0.36, 0.50, 0.72);
+const SUN: vec3<f32> = vec3(1.95, 1.68, 1.25);
+const SKY: vec3<f32> = vec3(0.33, 0.45, 0.64);
 const BOUNCE: vec3<f32> = vec3(0.24, 0.25, 0.13);
 const HAZE: vec3<f32> = vec3(0.68, 0.82, 0.90);
 
@@ -97,13 +97,13 @@ fn fragment(in: VertexOutput, @builtin(front_facing) front: bool) -> @location(0
         color = albedo * light + SUN * shine * 0.35 + SKY * rim;
         if (paint.shelter.z > 0.0) {
             let x = in.world_position.x;
-            let inside = (1.0 - smoothstep(paint.shelter.x - 0.7, paint.shelter.x, x))
+            let inside = (1.0 - smoothstep(paint.shelter.x - 0.2, paint.shelter.x + 0.35, x))
                 + smoothstep(paint.shelter.y, paint.shelter.y + 0.7, x);
             let near = step(abs(in.world_position.z), paint.shelter.z);
             color *= 1.0 - 0.97 * min(inside, 1.0) * near;
         }
     }
-    let fog = (1.0 - exp(-max(distance - 14.0, 0.0) * 0.0085)) * paint.finish.w;
+    let fog = (1.0 - exp(-max(distance - 24.0, 0.0) * 0.0058)) * paint.finish.w;
     let shown = tone(mix(color, HAZE, fog));
 #ifdef SHEER
     return vec4(shown, in.color.a * paint.tint.a);

@@ -48,7 +48,7 @@ impl Quality {
     /// How many blades of grass are sown.
     pub(super) fn blades(self) -> usize {
         match self {
-            Self::Low => 26_000,
+            Self::Low => 18_000,
             Self::High => 150_000,
         }
     }
@@ -56,7 +56,7 @@ impl Quality {
     /// How much wider a blade is than at its finest.
     pub(super) fn blade_width(self) -> f32 {
         match self {
-            Self::Low => 1.75,
+            Self::Low => 2.0,
             Self::High => 1.0,
         }
     }
@@ -69,11 +69,27 @@ impl Quality {
         }
     }
 
+    /// How many pebbles lie on the path.
+    pub(super) fn pebbles(self) -> usize {
+        match self {
+            Self::Low => 200,
+            Self::High => 900,
+        }
+    }
+
+    /// Of how many sides far round things are.
+    pub(super) fn roundness(self) -> usize {
+        match self {
+            Self::Low => 10,
+            Self::High => 18,
+        }
+    }
+
     /// How many flowers stand in the grass.
     pub(super) fn meadow_flowers(self) -> usize {
         match self {
-            Self::Low => 260,
-            Self::High => 520,
+            Self::Low => 280,
+            Self::High => 640,
         }
     }
 }

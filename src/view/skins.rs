@@ -1,6 +1,9 @@
 //! Gives every body the skin of its [`Look`], and takes it away with the body.
 
-use bevy::{ecs::entity::EntityHashMap, prelude::*};
+use bevy::{
+    ecs::{entity::EntityHashMap, system::SystemParam},
+    prelude::*,
+};
 
 use super::{paint::Paint, plain, quality::Quality, worm};
 use crate::{
@@ -36,14 +39,20 @@ struct Kits {
 
 type Bodies<'w, 's> = Query<'w, 's, (Entity, &'static Look, &'static Shown, Option<&'static Springs>)>;
 
+/// What skins are made from.
+#[derive(SystemParam)]
+struct Cloth<'w> {
+    quality: Res<'w, Quality>,
+    meshes: ResMut<'w, Assets<Mesh>>,
+    paints: ResMut<'w, Assets<Paint>>,
+}
+
 fn dress(
     bodies: Bodies,
-    quality: Res<Quality>,
     scene: Option<Res<CurrentScene>>,
     mut skins: ResMut<Skins>,
     mut kits: Local<Option<Kits>>,
-    mut meshes: ResMut<Assets<Mesh>>,
-    mut paints: ResMut<Assets<Paint>>,
+    mut cloth: Cloth,
     mut commands: Commands,
 ) {
     if scene.as_ref().is_some_and(|scene| scene.is_changed()) {
@@ -67,7 +76,7 @@ fn dress(
             continue;
         }
         let kits = kits.get_or_insert_with(|| {
-            let shadows = quality.shadows();
+            let shadows = cloth.quality.shadows();
             let in_garden = scene.as_ref().is_some_and(|scene| matches!(scene.file.props, Props::Garden { .. }));
             let shelter = if in_garden {
                 Vec4::new(garden::BURROW_MOUTH as f32, garden::DOOR as f32 + 0.1, 1.2, 0.0)
@@ -75,8 +84,8 @@ fn dress(
                 Vec4::ZERO
             };
             Kits {
-                worm: worm::WormKit::new(&mut meshes, &mut paints, shadows, shelter),
-                plain: plain::PlainKit::new(&mut meshes, &mut paints, shadows),
+                worm: worm::WormKit::new(&mut cloth.meshes, &mut cloth.paints, shadows, shelter),
+                plain: plain::PlainKit::new(&mut cloth.meshes, &mut cloth.paints, shadows),
             }
         });
         let root = match look {

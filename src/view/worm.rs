@@ -1,28 +1,18 @@
 //! The garden worm's skin: an ellipsoid a particle, orange rings for its scales, and a face.
 
-use core::f32::consts::{PI, TAU};
-
 use bevy::{light::NotShadowCaster, prelude::*};
 
-use super::{
-    clay::{Clay, blend, tint},
-    paint::Paint,
-    skins::SkinOf,
-};
+use super::{paint::Paint, skins::SkinOf, worm_parts};
 use crate::{body::Springs, physics::Shown, scenes::SceneMember};
 
 /// The radius of an ellipsoid at rest, in rest lengths of the springs.
 const RADIUS: f32 = 0.37;
 /// Half the length of an ellipsoid at rest, in rest lengths: neighbours overlap, so that the body is of one piece.
-const HALF_LENGTH: f32 = 0.7;
+const HALF_LENGTH: f32 = 0.63;
 /// How much the worm is lifted off the path: it lies on gravel.
 const CLEARANCE: f32 = 0.03;
 /// Where on an ellipsoid rings sit, in half lengths from its middle.
 const RINGS: [f32; 3] = [-0.4, 0.0, 0.4];
-
-const SKIN: u32 = 0xf29a9a;
-const BELLY: u32 = 0xffd2bd;
-const RING: u32 = 0xff7a12;
 
 /// What the parts of a worm are made of; shared by all worms.
 pub(super) struct WormKit {
@@ -40,12 +30,12 @@ impl WormKit {
     /// Shapes the parts. `shelter` is where the worm is in the dark, see [`Paint`].
     pub fn new(meshes: &mut Assets<Mesh>, paints: &mut Assets<Paint>, shadows: bool, shelter: Vec4) -> Self {
         Self {
-            body: meshes.add(body()),
-            ring: meshes.add(ring()),
-            eye: meshes.add(eye()),
-            mouth: meshes.add(mouth()),
-            feeler: meshes.add(feeler()),
-            blot: meshes.add(blot()),
+            body: meshes.add(worm_parts::body()),
+            ring: meshes.add(worm_parts::ring()),
+            eye: meshes.add(worm_parts::eye()),
+            mouth: meshes.add(worm_parts::mouth()),
+            feeler: meshes.add(worm_parts::feeler()),
+            blot: meshes.add(worm_parts::blot()),
             skin: paints.add(Paint { shelter, ..Paint::glossy(shadows, 0.7) }),
             shadow: paints.add(Paint::blot(if shadows { 0.5 } else { 1.0 })),
         }
@@ -210,93 +200,35 @@ fn rest_length(springs: Option<&Springs>) -> f32 {
     (springs.iter().map(|spring| spring.rest_length).sum::<f64>() / springs.len() as f64) as f32
 }
 
-/// The unit ball with a pale belly.
-fn body() -> Mesh {
-    let mut clay = Clay::default();
-    let along_x = Transform::from_rotation(Quat::from_rotation_z(-PI * 0.5));
-    clay.ball(along_x, 36, |direction| {
-        let up = -direction.x;
-        blend(tint(BELLY), tint(SKIN), (up * 1.4 + 0.85).clamp(0.0, 1.0))
-    });
-    clay.fire()
-}
+#[cfg(test)]
+mod tests {
+    use core::f32::consts::PI;
 
-/// A torus about x of radius 1.
-fn ring() -> Mesh {
-    let mut clay = Clay::default();
-    let circle: Vec<Vec3> = (0..=36)
-        .map(|i| {
-            let turn = TAU * i as f32 / 36.0;
-            Vec3::new(0.0, turn.cos(), turn.sin())
-        })
-        .collect();
-    clay.tube(&circle, 10, |_| 0.12, |_| tint(RING));
-    clay.fire()
-}
+    use super::*;
 
-/// An eye that looks along x: white, pupil, two highlights.
-fn eye() -> Mesh {
-    let mut clay = Clay::default();
-    clay.ball(Transform::default(), 20, |_| tint(0xffffff));
-    let mut spot = |direction: Vec3, out: f32, size: Vec3, color: u32| {
-        let turn = Quat::from_rotation_arc(Vec3::X, direction.normalize());
-        let at = Transform::from_translation(turn * Vec3::X * out).with_rotation(turn).with_scale(size);
-        let color = if color == 0xffffff { [3.0, 3.0, 3.0, 0.0] } else { tint(color) };
-        clay.ball(at, 14, |_| color);
-    };
-    spot(Vec3::new(1.0, 0.05, 0.0), 0.74, Vec3::new(0.36, 0.66, 0.6), 0x5b3a1e);
-    spot(Vec3::new(1.0, 0.05, 0.0), 0.84, Vec3::new(0.3, 0.5, 0.45), 0x140d0a);
-    spot(Vec3::new(1.0, 0.3, 0.24), 1.08, Vec3::new(0.09, 0.16, 0.16), 0xffffff);
-    spot(Vec3::new(1.0, -0.16, -0.2), 1.08, Vec3::new(0.06, 0.09, 0.09), 0xffffff);
-    clay.fire()
-}
-
-/// A wide smile with dimples, and rosy cheeks, on the unit ball.
-fn mouth() -> Mesh {
-    let mut clay = Clay::default();
-    let smile: Vec<Vec3> = (0..=20)
-        .map(|i| {
-            let t = i as f32 / 10.0 - 1.0;
-            let (around, up): (f32, f32) = (t * 0.95, -0.3 + 0.34 * t * t);
-            Vec3::new(around.cos() * up.cos(), up.sin(), around.sin() * up.cos())
-        })
-        .collect();
-    clay.tube(&smile, 7, |t| 0.03 + 0.028 * (PI * t).sin(), |_| tint(0x7a2230));
-    for end in [smile[0], smile[20]] {
-        clay.ball(Transform::from_translation(end).with_scale(Vec3::splat(0.055)), 8, |_| tint(0x7a2230));
+    #[test]
+    fn an_ellipsoid_keeps_its_volume_while_it_stretches() {
+        let volume = |gap: f32| {
+            let positions = [Vec3::ZERO, Vec3::X * gap, Vec3::X * 2.0 * gap];
+            let it = Segment::of(1, &positions, 1.0);
+            (it.half_length * it.radius * it.radius, it.radius)
+        };
+        let (rest, thick) = volume(1.0);
+        for gap in [0.72, 0.9, 1.31] {
+            let (volume, radius) = volume(gap);
+            assert!((volume / rest - 1.0).abs() < 1e-5, "at {gap}: {volume} and not {rest}");
+            assert_eq!(radius > thick, gap < 1.0, "a short segment is thick");
+        }
     }
-    for side in [-1.0, 1.0] {
-        let direction = Vec3::new(0.52, 0.02, side * 0.85).normalize();
-        let turn = Quat::from_rotation_arc(Vec3::X, direction);
-        let cheek =
-            Transform::from_translation(direction * 0.975).with_rotation(turn).with_scale(Vec3::new(0.05, 0.17, 0.2));
-        clay.ball(cheek, 14, |_| tint(0xf76a7c));
+
+    #[test]
+    fn an_ellipsoid_lies_on_the_path_whatever_the_heading() {
+        for heading in [0.0, 0.7, 2.0, -1.5, PI] {
+            let forward = Quat::from_rotation_y(heading) * Vec3::X;
+            let it = Segment::of(2, &[Vec3::ZERO, forward, forward * 2.0], 1.0);
+            assert!((it.turn * Vec3::X).distance(forward) < 1e-5);
+            assert!((it.turn * Vec3::Y).distance(Vec3::Y) < 1e-5, "it stays upright at {heading}");
+            assert!((it.middle.y - it.radius - CLEARANCE).abs() < 1e-5);
+        }
     }
-    clay.fire()
-}
-
-/// A feeler that stands up along y.
-fn feeler() -> Mesh {
-    let mut clay = Clay::default();
-    let stalk: Vec<Vec3> = (0..=6)
-        .map(|i| {
-            let t = i as f32 / 6.0;
-            Vec3::new(0.3 * t * t, -0.1 + 0.75 * t, 0.0)
-        })
-        .collect();
-    clay.tube(&stalk, 7, |t| 0.07 - 0.025 * t, |_| tint(SKIN));
-    clay.ball(Transform::from_translation(stalk[6]).with_scale(Vec3::splat(0.13)), 12, |_| tint(RING));
-    clay.fire()
-}
-
-/// A flat soft spot of shade.
-fn blot() -> Mesh {
-    let mut clay = Clay::default();
-    clay.grid(25, 5, |spoke, ring| {
-        let around = TAU * spoke as f32 / 24.0;
-        let out = ring as f32 / 4.0;
-        let alpha = 0.62 * (1.0 - out * out).powi(2);
-        (Vec3::new(around.cos() * out, 0.0, around.sin() * out), Vec3::Y, [0.03, 0.025, 0.01, alpha])
-    });
-    clay.fire()
 }

@@ -13,6 +13,8 @@ mod laws;
 #[cfg(feature = "window")]
 mod panel;
 mod parameters;
+#[cfg(feature = "window")]
+mod picture;
 mod saving;
 mod stability;
 mod sync;

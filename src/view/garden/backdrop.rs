@@ -6,7 +6,10 @@ use bevy::prelude::*;
 use rand::{RngExt, rngs::SmallRng};
 
 use super::{MIDDLE, between, lawn};
-use crate::view::clay::{Clay, Tint, blend, shade, tint};
+use crate::view::{
+    clay::{Clay, Tint, blend, shade, tint},
+    quality::Quality,
+};
 
 /// The dome of the sky, from haze at the horizon to blue overhead.
 pub(in crate::view) fn sky() -> Clay {
@@ -28,60 +31,79 @@ pub(in crate::view) fn sky() -> Clay {
 }
 
 /// Heaps of soft balls with flat feet.
-pub(super) fn clouds(random: &mut SmallRng) -> Clay {
+pub(super) fn clouds(random: &mut SmallRng, quality: Quality) -> Clay {
     let mut clay = Clay::default();
     for i in 0..13 {
         let around = TAU * (i as f32 + between(random, -0.3, 0.3)) / 13.0;
-        let (out, up) = (between(random, 95.0, 135.0), between(random, 22.0, 46.0));
+        let (out, up) = (
+            between(random, 95.0, 135.0),
+            if i % 3 == 0 { between(random, 30.0, 50.0) } else { between(random, 12.0, 24.0) },
+        );
         let at = Vec3::new(around.cos() * out, up, around.sin() * out);
         let across = Vec3::new(-around.sin(), 0.0, around.cos());
-        let size = between(random, 3.0, 5.5);
+        let size = between(random, 2.6, 4.6);
         for puff in 0..9 {
             let t = puff as f32 / 8.0 * 2.0 - 1.0;
             let big = size * (1.15 - 0.75 * t * t) * between(random, 0.75, 1.1);
             let place = at + across * (t * size * 3.1) + Vec3::Y * between(random, 0.0, big * 0.35);
             let flat = Transform::from_translation(place).with_scale(Vec3::new(big, big * 0.72, big));
-            clay.ball(flat, 14, |direction| shade(tint(0xfbfcff), 0.86 + 0.2 * direction.y));
+            clay.ball(flat, quality.roundness(), |direction| shade(tint(0xfbfcff), 0.86 + 0.2 * direction.y));
         }
     }
     clay
 }
 
 /// Two rows of hills, the further the paler.
-pub(super) fn hills(random: &mut SmallRng) -> Clay {
+pub(super) fn hills(random: &mut SmallRng, quality: Quality) -> Clay {
     let mut clay = Clay::default();
-    for (count, out, low, high, code) in [(15, 118.0, 13.0, 22.0, 0x6f9a6a_u32), (13, 84.0, 5.0, 11.0, 0x6fa54a)] {
+    for (count, out, low, high, code) in [(15, 118.0, 8.0, 14.0, 0x6f9a6a_u32), (13, 84.0, 4.0, 8.0, 0x6fa54a)] {
         for i in 0..count {
             let around = TAU * (i as f32 + between(random, -0.3, 0.3)) / count as f32;
             let place = Transform::from_xyz(MIDDLE.x + around.cos() * out, -2.0, around.sin() * out).with_scale(
                 Vec3::new(between(random, 24.0, 38.0), between(random, low, high), between(random, 24.0, 38.0)),
             );
             let color = shade(tint(code), between(random, 0.85, 1.1));
-            clay.ball(place, 32, |direction| shade(color, 0.6 + 0.4 * direction.y.max(0.0)));
+            clay.ball(place, quality.roundness() + 6, |direction| shade(color, 0.6 + 0.4 * direction.y.max(0.0)));
         }
     }
     clay
 }
 
-/// Round trees and tall ones behind the garden.
-pub(super) fn trees(random: &mut SmallRng) -> Clay {
-    let mut clay = Clay::default();
-    for i in 0..46 {
-        let around = TAU * (i as f32 + between(random, -0.45, 0.45)) / 46.0;
+/// How many trees stand around the garden, and into how many meshes they go, so that those behind the viewer cost nothing.
+const TREES: usize = 46;
+const SECTORS: usize = 8;
+
+/// Round trees all around the garden.
+pub(super) fn trees(random: &mut SmallRng, quality: Quality) -> Vec<Clay> {
+    let mut sectors: Vec<_> = (0..SECTORS).map(|_| Clay::default()).collect();
+    for i in 0..TREES {
+        let around = TAU * (i as f32 + between(random, -0.45, 0.45)) / TREES as f32;
         // In front of the camera's usual place it stays open.
         let front = around.sin().max(0.0);
         let out = between(random, 21.0, 44.0) + 16.0 * front;
         let (x, z) = (MIDDLE.x + around.cos() * out, around.sin() * out);
-        tree(&mut clay, Vec3::new(x, lawn::height(x, z) - 0.1, z), between(random, 0.8, 1.45), random);
+        tree(
+            &mut sectors[i * SECTORS / TREES],
+            Vec3::new(x, lawn::height(x, z) - 0.1, z),
+            between(random, 0.8, 1.45),
+            quality.roundness(),
+            random,
+        );
     }
     // Three old friends that frame the house.
     for (x, z, size) in [(17.2, -4.2, 1.15), (-7.6, -6.2, 1.0), (1.2, -9.6, 0.85)] {
-        tree(&mut clay, Vec3::new(x, lawn::height(x, z) - 0.05, z), size, random);
+        tree(
+            &mut sectors[SECTORS * 3 / 4],
+            Vec3::new(x, lawn::height(x, z) - 0.05, z),
+            size,
+            quality.roundness() + 4,
+            random,
+        );
     }
-    clay
+    sectors
 }
 
-fn tree(clay: &mut Clay, foot: Vec3, size: f32, random: &mut SmallRng) {
+fn tree(clay: &mut Clay, foot: Vec3, size: f32, sides: usize, random: &mut SmallRng) {
     let top = foot + Vec3::Y * (2.6 * size);
     let bark = tint(0x6f4c30);
     clay.tube(
@@ -97,15 +119,15 @@ fn tree(clay: &mut Clay, foot: Vec3, size: f32, random: &mut SmallRng) {
         let at = top + Vec3::new(around.cos() * out, up, around.sin() * out) * size;
         let big = size * between(random, 0.9, 1.3);
         let place = Transform::from_translation(at).with_scale(Vec3::new(big, big * 0.86, big));
-        crown(clay, place, leaves);
+        crown(clay, place, sides, leaves);
     }
 }
 
 /// One round of a tree's crown: lumpy, darker below.
-fn crown(clay: &mut Clay, place: Transform, leaves: Tint) {
-    clay.ball(place, 16, |direction| {
+fn crown(clay: &mut Clay, place: Transform, sides: usize, leaves: Tint) {
+    clay.ball(place, sides, |direction| {
         let lumps = (direction.x * 9.0).sin() * (direction.y * 8.0 + 1.0).sin() * (direction.z * 9.0 + 2.0).sin();
-        shade(leaves, 0.72 + 0.34 * direction.y + 0.22 * lumps)
+        shade(leaves, 0.8 + 0.26 * direction.y + 0.2 * lumps)
     });
 }
 

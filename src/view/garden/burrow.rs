@@ -43,7 +43,7 @@ pub(super) fn burrow(random: &mut SmallRng) -> Clay {
     };
     clay.grid(rows, columns, |row, column| {
         let x = BACK + (MOUTH - BACK) * (row as f32 / (rows - 1) as f32).powf(0.8);
-        let around = TAU * (column as f32 / (columns - 1) as f32);
+        let around = -TAU * (column as f32 / (columns - 1) as f32);
         let (e, at) = (0.02, surface(x, around));
         let normal = (surface(x, around + e) - surface(x, around - e))
             .cross(surface((x + e).min(MOUTH), around) - surface((x - e).max(BACK), around))
@@ -63,7 +63,7 @@ pub(super) fn burrow(random: &mut SmallRng) -> Clay {
     ];
     clay.grid(rings.len(), columns, |row, column| {
         let (x, out, light) = rings[row];
-        let around = TAU * (column as f32 / (columns - 1) as f32);
+        let around = -TAU * (column as f32 / (columns - 1) as f32);
         let flat = if row == 0 { 0.86 * bump(MOUTH, around) } else { 1.0 };
         let wide = if row == 0 { bump(MOUTH, around) } else { 1.0 };
         let at = Vec3::new(x, AXIS + out * around.sin() * flat, out * around.cos() * wide);

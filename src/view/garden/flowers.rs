@@ -141,7 +141,7 @@ pub(super) fn meadow(random: &mut SmallRng, quality: Quality) -> Clay {
         let top =
             foot + Vec3::new(between(random, -0.06, 0.06), between(random, 0.26, 0.44), between(random, -0.06, 0.06));
         let petals = tint([0xfdfbf2, 0xfdfbf2, 0xffdf4d, 0xe8483b, 0x7f8cf0][random.random_range(0..5)]);
-        small_flower(&mut clay, foot, top, between(random, 0.05, 0.08), petals);
+        small_flower(&mut clay, foot, top, between(random, 0.06, 0.1), petals);
     }
     clay
 }
@@ -159,7 +159,7 @@ fn small_flower(clay: &mut Clay, foot: Vec3, top: Vec3, size: f32, petals: Tint)
     let ring: Vec<u32> = (0..=count)
         .map(|i| {
             let around = TAU * i as f32 / count as f32;
-            let out = if i % 2 == 0 { 1.15 } else { 0.6 };
+            let out = if i % 2 == 0 { 1.15 } else { 0.72 };
             let at = top + tilt * Vec3::new(around.cos() * size * out, 0.0, -around.sin() * size * out);
             clay.vertex(at, Vec3::Y, swaying(petals, reach))
         })
@@ -167,12 +167,16 @@ fn small_flower(clay: &mut Clay, foot: Vec3, top: Vec3, size: f32, petals: Tint)
     for pair in ring.windows(2) {
         clay.triangle(middle, pair[0], pair[1]);
     }
-    let heart = Transform::from_translation(top + tilt * Vec3::Y * (size * 0.2)).with_scale(Vec3::new(
-        size * 0.38,
-        size * 0.25,
-        size * 0.38,
-    ));
-    clay.ball(heart, 6, |_| swaying(tint(0xf6b81f), reach));
+    let heart: Vec<u32> = (0..6)
+        .map(|i| {
+            let around = -TAU * i as f32 / 6.0;
+            let at = top + tilt * Vec3::new(around.cos() * size * 0.36, size * 0.33, around.sin() * size * 0.36);
+            clay.vertex(at, Vec3::Y, swaying(tint(0xf6b81f), reach))
+        })
+        .collect();
+    for pair in heart[1..].windows(2) {
+        clay.triangle(heart[0], pair[0], pair[1]);
+    }
 }
 
 /// Three families of mushrooms.

@@ -19,15 +19,15 @@ pub(super) fn height(x: f32, z: f32) -> f32 {
 /// The colour of the lawn at a spot, in broad patches.
 pub(super) fn green(x: f32, z: f32) -> Tint {
     let patch = (x * 0.55 + (z * 0.4).sin() * 1.3).sin() * (z * 0.5 + (x * 0.35).cos()).cos() * 0.5 + 0.5;
-    blend(tint(0x4f8a2b), tint(0x86b23c), patch)
+    blend(tint(0x467a30), tint(0x6f9c3e), patch)
 }
 
 /// The bare ground, finer where the worm crawls.
 pub(super) fn lawn(quality: Quality) -> Clay {
     let mut clay = Clay::default();
-    let (rings, spokes) = (90, 128);
+    let (rings, spokes) = if quality == Quality::Low { (60, 96) } else { (110, 160) };
     clay.grid(spokes + 1, rings, |spoke, ring| {
-        let around = core::f32::consts::TAU * spoke as f32 / spokes as f32;
+        let around = -core::f32::consts::TAU * spoke as f32 / spokes as f32;
         let out = FIELD * 1.6 * (ring as f32 / (rings - 1) as f32).powf(2.2);
         let (x, z) = (MIDDLE.x + out * around.cos(), MIDDLE.y + out * around.sin());
         let e = 0.1;

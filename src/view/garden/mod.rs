@@ -10,6 +10,7 @@ mod grass;
 mod house;
 mod lawn;
 mod path;
+mod roof;
 
 use bevy::{camera::visibility::NoFrustumCulling, light::NotShadowCaster, prelude::*};
 use rand::{RngExt, SeedableRng, rngs::SmallRng};
@@ -51,15 +52,17 @@ pub(super) fn plant(
 
     let sky = spawn(backdrop::sky(), Paint::glowing(), false);
     spawn(
-        backdrop::clouds(&mut random),
+        backdrop::clouds(&mut random, quality),
         Paint { finish: Vec4::new(0.0, 0.0, 0.0, 0.25), ..Paint::matte(false) },
         false,
     );
-    spawn(backdrop::hills(&mut random), Paint::matte(false), false);
-    spawn(backdrop::trees(&mut random), Paint::matte(shadows), true);
+    spawn(backdrop::hills(&mut random, quality), Paint::matte(false), false);
+    for sector in backdrop::trees(&mut random, quality) {
+        spawn(sector, Paint::matte(shadows), true);
+    }
     spawn(backdrop::fence(&mut random), Paint::matte(shadows), true);
     spawn(lawn::lawn(quality), Paint::matte(shadows), false);
-    spawn(path::path(&mut random), Paint::matte(shadows), true);
+    spawn(path::path(&mut random, quality), Paint::matte(shadows), true);
     spawn(burrow::burrow(&mut random), Paint::matte(shadows), true);
     spawn(house::house(&mut random), Paint::matte(shadows), true);
     spawn(house::panes(), Paint::glossy(shadows, 1.0), false);

@@ -6,7 +6,10 @@ use rand::{RngExt, rngs::SmallRng};
 use super::between;
 use crate::{
     scenes::garden::{BURROW_MOUTH, DOOR},
-    view::clay::{Clay, Tint, blend, shade, tint},
+    view::{
+        clay::{Clay, Tint, blend, shade, tint},
+        quality::Quality,
+    },
 };
 
 const START: f32 = BURROW_MOUTH as f32 - 0.2;
@@ -38,7 +41,7 @@ pub(super) fn pebble(clay: &mut Clay, at: Vec3, size: Vec3, sides: usize, color:
 }
 
 /// The path.
-pub(super) fn path(random: &mut SmallRng) -> Clay {
+pub(super) fn path(random: &mut SmallRng, quality: Quality) -> Clay {
     let mut clay = Clay::default();
     let (rows, columns) = (9, 140);
     clay.grid(rows, columns, |row, column| {
@@ -50,7 +53,7 @@ pub(super) fn path(random: &mut SmallRng) -> Clay {
         let color = shade(blend(tint(0xc8b28a), tint(0x7d6a49), edge), 0.86 + 0.2 * speckle);
         (Vec3::new(x, 0.025 * (1.0 - edge), z), Vec3::Y, color)
     });
-    for _ in 0..620 {
+    for _ in 0..quality.pebbles() {
         let x = between(random, START, END);
         let z = between(random, -1.0, 1.0) * half_width(x);
         let size = between(random, 0.018, 0.05);
@@ -64,7 +67,7 @@ pub(super) fn path(random: &mut SmallRng) -> Clay {
             let z = side * (half_width(x) + between(random, 0.02, 0.1));
             let size = Vec3::new(length, length * between(random, 0.5, 0.75), length * between(random, 0.6, 0.85));
             let color = stone(random);
-            pebble(&mut clay, Vec3::new(x, 0.03, z), size, 9, color, random);
+            pebble(&mut clay, Vec3::new(x, 0.03, z), size, 8, color, random);
             x += length * between(random, 1.7, 2.6);
         }
     }
