@@ -78,7 +78,7 @@ fn groups(settings: &Settings, body: &str) -> Vec<Group> {
 fn show(ui: &mut egui::Ui, settings: &mut Settings, group: &Group) {
     // One phase for all muscles would make a standing wave: phases are set one by one.
     let phase = group.all.is_some_and(|all| Path::parse(&settings.parameters[all].path).field == "phase");
-    let Some(all) = group.all.filter(|_| !(phase && !group.elements.is_empty())) else {
+    let Some(all) = group.all.filter(|_| !phase || group.elements.is_empty()) else {
         for &index in &group.elements {
             let parameter = &mut settings.parameters[index];
             let edit = row::wide(ui, parameter, State::of(parameter), |_, _| {});

@@ -43,7 +43,7 @@ fn worm() -> Settings {
 }
 
 fn harness(section: Section, settings: Settings) -> Harness<'static, Settings> {
-    Harness::builder().with_size(vec2(300.0, 900.0)).build_ui_state(move |ui, settings| section(ui, settings), settings)
+    Harness::builder().with_size(vec2(300.0, 900.0)).build_ui_state(section, settings)
 }
 
 /// Types `text` over what is in the field `label`, and presses Enter.
