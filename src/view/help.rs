@@ -58,17 +58,20 @@ fn write(mut contexts: EguiContexts, help: Res<KeyHelp>, following: Res<FollowWo
     }
     let context = contexts.ctx_mut()?;
     let frame = egui::Frame::new().fill(Color32::from_black_alpha(110)).corner_radius(8).inner_margin(10);
-    egui::Area::new("keys".into()).anchor(Align2::LEFT_BOTTOM, [12.0, -12.0]).interactable(false).show(context, |ui| {
-        frame.show(ui, |ui| {
-            egui::Grid::new("keys").spacing([12.0, 3.0]).show(ui, |ui| {
-                for (key, does) in KEYS {
-                    let does = if key == "C" && following.0 { "stop following" } else { does };
-                    ui.label(RichText::new(key).strong().color(Color32::from_rgb(255, 214, 140)));
-                    ui.label(RichText::new(does).color(Color32::WHITE));
-                    ui.end_row();
-                }
+    egui::Area::new("keys".into()).anchor(Align2::RIGHT_BOTTOM, [-12.0, -12.0]).interactable(false).show(
+        context,
+        |ui| {
+            frame.show(ui, |ui| {
+                egui::Grid::new("keys").spacing([12.0, 3.0]).show(ui, |ui| {
+                    for (key, does) in KEYS {
+                        let does = if key == "C" && following.0 { "stop following" } else { does };
+                        ui.label(RichText::new(key).strong().color(Color32::from_rgb(255, 214, 140)));
+                        ui.label(RichText::new(does).color(Color32::WHITE));
+                        ui.end_row();
+                    }
+                });
             });
-        });
-    });
+        },
+    );
     Ok(())
 }
