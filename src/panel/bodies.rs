@@ -4,25 +4,13 @@ use bevy_egui::egui;
 
 use super::{
     names::{Path, element},
-    row,
+    row::{self, Edit, State},
     settings::Settings,
 };
 
-/// The order in which a body's parameters are shown; others follow.
-const ORDER: [&str; 12] = [
-    "stiffness",
-    "damping",
-    "mass",
-    "rest_length",
-    "amplitude",
-    "period",
-    "phase",
-    "ramp",
-    "drag",
-    "grip",
-    "ratchet",
-    "gravity",
-];
+/// The parameters that one plays with, in order; the others are folded away below them.
+const FIRST: [&str; 10] =
+    ["stiffness", "damping", "mass", "rest_length", "amplitude", "period", "phase", "drag", "grip", "ratchet"];
 
 /// At most this many single elements of a parameter are shown: beyond it a file is the better place.
 const MOST_ELEMENTS: usize = 48;
@@ -41,8 +29,11 @@ pub fn section(ui: &mut egui::Ui, settings: &mut Settings) {
         ui.weak("This scene has no body.");
         return;
     };
-    for group in groups(settings, &body.name) {
-        show(ui, settings, &group);
+    let groups = groups(settings, &body.name);
+    let (first, more) = groups.split_at(groups.partition_point(|group| group.rank < FIRST.len()));
+    first.iter().for_each(|group| show(ui, settings, group));
+    if !more.is_empty() {
+        ui.collapsing("more", |ui| more.iter().for_each(|group| show(ui, settings, group)));
     }
 }
 
@@ -71,7 +62,7 @@ fn groups(settings: &Settings, body: &str) -> Vec<Group> {
             .iter()
             .position(|(group, field, _)| (*group, *field) == (path.group, path.field))
             .unwrap_or_else(|| {
-                let rank = ORDER.iter().position(|field| *field == path.field).unwrap_or(ORDER.len());
+                let rank = FIRST.iter().position(|field| *field == path.field).unwrap_or(FIRST.len());
                 found.push((path.group, path.field, Group { all: None, elements: Vec::new(), rank }));
                 found.len() - 1
             });
@@ -90,29 +81,27 @@ fn show(ui: &mut egui::Ui, settings: &mut Settings, group: &Group) {
     let Some(all) = group.all.filter(|_| !(phase && !group.elements.is_empty())) else {
         for &index in &group.elements {
             let parameter = &mut settings.parameters[index];
-            let new = row::wide(ui, parameter, false, |_, _| {});
-            change(settings, index, new);
+            let edit = row::wide(ui, parameter, State::of(parameter), |_, _| {});
+            change(settings, index, edit);
         }
         return;
     };
-    let mixed = mixed(settings, group);
     let several = group.elements.len() > 1;
-    let was_default = settings.parameters[all].default;
-    let new = row::wide(ui, &mut settings.parameters[all], mixed, |ui, setting| {
+    let state = state(settings, all, group);
+    let edit = row::wide(ui, &mut settings.parameters[all], state, |ui, setting| {
         if several {
             unfold(ui, setting);
         }
     });
-    // Where elements began unlike each other, a reset gives each its own value back.
-    let own_defaults = group.elements.iter().any(|&index| settings.parameters[index].default != was_default);
-    if own_defaults && new == Some(was_default) {
-        for &index in &group.elements {
-            let value = settings.parameters[index].default;
-            change(settings, index, Some(value));
-        }
+    let default = settings.parameters[all].default;
+    let alike = group.elements.iter().all(|&index| settings.parameters[index].default == default);
+    if edit == Some(Edit::Reset) && !alike {
+        // Each gets its own value back.
+        group.elements.iter().for_each(|&index| change(settings, index, edit));
     } else {
-        change(settings, all, new);
-        if let Some(value) = new {
+        change(settings, all, edit);
+        if edit.is_some() {
+            let value = settings.parameters[all].value;
             group.elements.iter().for_each(|&index| settings.parameters[index].value = value);
         }
     }
@@ -126,8 +115,8 @@ fn elements(ui: &mut egui::Ui, settings: &mut Settings, group: &Group) {
     for &index in group.elements.iter().take(MOST_ELEMENTS) {
         let path = Path::parse(&settings.parameters[index].path);
         let label = format!("{} {}", element(path.group), path.index.unwrap_or_default());
-        let new = row::narrow(ui, &mut settings.parameters[index], &label);
-        change(settings, index, new);
+        let edit = row::narrow(ui, &mut settings.parameters[index], &label);
+        change(settings, index, edit);
     }
     if let Some(more) = group.elements.len().checked_sub(MOST_ELEMENTS).filter(|&more| more > 0) {
         ui.weak(format!("and {more} more; set them in a file or with --set"));
@@ -145,15 +134,20 @@ fn unfold(ui: &mut egui::Ui, setting: &mut super::setting::Setting) {
     }
 }
 
-/// Whether the elements differ from each other.
-fn mixed(settings: &Settings, group: &Group) -> bool {
-    let value = |index: usize| settings.parameters[index].value;
-    group.elements.windows(2).any(|pair| value(pair[0]) != value(pair[1]))
+/// The state of a row that stands for all elements of a group.
+fn state(settings: &Settings, all: usize, group: &Group) -> State {
+    let parameters = &settings.parameters;
+    let changed = |index: usize| parameters[index].value != parameters[index].default;
+    let elements = &group.elements;
+    State {
+        mixed: elements.windows(2).any(|pair| parameters[pair[0]].value != parameters[pair[1]].value),
+        changed: changed(all) || elements.iter().any(|&index| changed(index)),
+    }
 }
 
-fn change(settings: &mut Settings, index: usize, new: Option<f64>) {
-    if let Some(value) = new {
+fn change(settings: &mut Settings, index: usize, edit: Option<Edit>) {
+    if let Some(edit) = edit {
         let path = settings.parameters[index].path.clone();
-        settings.request(&path, value);
+        settings.edit(&path, edit);
     }
 }

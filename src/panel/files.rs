@@ -86,15 +86,13 @@ pub fn messages(ui: &mut egui::Ui, settings: &mut Settings) {
         egui::Frame::new().fill(super::colors::WELL).stroke((1.0, color)).inner_margin(5).corner_radius(4).show(
             ui,
             |ui| {
-                ui.horizontal_top(|ui| {
-                    let width = ui.available_width() - 26.0;
-                    ui.scope(|ui| {
-                        ui.set_width(width);
-                        ui.label(RichText::new(&note.text).size(12.0).color(color));
-                    });
+                ui.with_layout(Layout::right_to_left(Align::Min), |ui| {
                     if ui.add(egui::Button::new("✖").frame(false)).on_hover_text("Put away").clicked() {
                         gone = Some(index);
                     }
+                    ui.vertical(|ui| {
+                        ui.add(egui::Label::new(RichText::new(&note.text).size(12.0).color(color)).wrap())
+                    });
                 });
             },
         );

@@ -58,11 +58,8 @@ impl Plugin for PanelPlugin {
         if !app.is_plugin_added::<EguiPlugin>() {
             app.add_plugins(EguiPlugin::default());
         }
-        let mut global = app.world_mut().resource_mut::<EguiGlobalSettings>();
         // Its own choice is the first camera that is spawned, which may draw into an image.
-        global.auto_create_primary_context = false;
-        // What is typed into a field is not for the keys of the scene.
-        global.enable_absorb_bevy_input_system = true;
+        app.world_mut().resource_mut::<EguiGlobalSettings>().auto_create_primary_context = false;
         app.add_message::<BodyFrozen>()
             .add_message::<Restart>()
             .add_message::<SceneChange>()

@@ -1,7 +1,7 @@
 //! The plots: lengths, velocities, distance, and the cost of a frame.
 
-use bevy_egui::egui::{self, Color32, FontId, RichText, Vec2b};
-use egui_plot::{AxisHints, Line, Plot, PlotPoints, PlotUi, Span};
+use bevy_egui::egui::{self, Color32, FontId, RichText, Sense, Vec2b, vec2};
+use egui_plot::{AxisHints, Line, Plot, PlotPoints, PlotUi, Polygon};
 
 use super::{
     colors::{self, SERIES},
@@ -37,11 +37,19 @@ fn lengths(ui: &mut egui::Ui, traces: &Traces) {
 }
 
 fn velocities(ui: &mut egui::Ui, traces: &Traces) {
-    legend(ui, "velocity (shaded: at rest)", traces.masses.iter().map(|trace| trace.name.as_str()));
+    legend(ui, "velocity (bars: at rest)", traces.masses.iter().map(|trace| trace.name.as_str()));
     show(ui, "velocities", span(&traces.time), |plot| {
+        // A lane below zero for each mass: shades across the whole plot would hide each other.
+        let fastest = traces.masses.iter().flat_map(|trace| trace.velocity.iter()).fold(0.0_f64, |a, v| a.max(v.abs()));
+        let lane = (fastest * 0.12).max(1e-9);
         for (index, color) in (0..traces.masses.len()).zip(SERIES) {
+            let (top, bottom) = (-lane * (index as f64 + 0.3), -lane * (index as f64 + 1.1));
             for rest in traces.rests(index) {
-                plot.span(Span::new("", rest).fill(faint(color, 0.22)));
+                let (start, end) = (*rest.start(), *rest.end());
+                let corners = vec![[start, bottom], [end, bottom], [end, top], [start, top]];
+                let lane =
+                    Polygon::new("at rest", corners).fill_color(faint(color, 0.75)).width(0.0).allow_hover(false);
+                plot.polygon(lane);
             }
         }
         for (trace, color) in traces.masses.iter().zip(SERIES) {
@@ -86,7 +94,9 @@ fn legend<'a>(ui: &mut egui::Ui, title: &str, names: impl IntoIterator<Item = &'
     ui.horizontal(|ui| {
         ui.label(RichText::new(title).size(12.0));
         for (name, color) in names.into_iter().zip(SERIES) {
-            ui.label(RichText::new(format!("● {name}")).size(11.5).color(color));
+            let (stroke, _) = ui.allocate_exact_size(vec2(10.0, 3.0), Sense::hover());
+            ui.painter().rect_filled(stroke, 1.0, color);
+            ui.label(RichText::new(name).size(11.5).color(color));
         }
     });
 }
@@ -109,7 +119,8 @@ fn show<'a>(ui: &mut egui::Ui, id: &str, (start, end): (f64, f64), draw: impl Fn
         .allow_boxed_zoom(false)
         .allow_axis_zoom_drag(false)
         .allow_double_click_reset(false)
-        .grid_spacing(24.0..=200.0)
+        .grid_color(Color32::from_gray(0x58))
+        .grid_spacing(14.0..=160.0)
         .show(ui, move |plot| {
             plot.set_auto_bounds(Vec2b::new(false, true));
             draw(plot);

@@ -15,49 +15,74 @@ const FIELD: f32 = 64.0;
 /// Width of a reset button.
 const RESET: f32 = 20.0;
 
-/// A parameter on two lines: name, unit and field, and below them its slider. `extra` is drawn beside the name. Answers with the new value where
-/// the user changed it.
+/// What the user did to a row.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Edit {
+    /// Chose a value, by the slider or by typing.
+    Value(f64),
+    /// Asked for the default.
+    Reset,
+}
+
+/// What a row cannot know by its parameter alone.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct State {
+    /// It stands for elements whose values differ.
+    pub mixed: bool,
+    /// It, or an element that it stands for, is not at its default.
+    pub changed: bool,
+}
+
+impl State {
+    /// The state of a row that stands for its parameter alone.
+    pub fn of(setting: &Setting) -> Self {
+        Self { mixed: false, changed: setting.value != setting.default }
+    }
+}
+
+/// A parameter on two lines: name, unit and field, and below them its slider. `extra` is drawn beside the name.
 pub fn wide(
     ui: &mut egui::Ui,
     setting: &mut Setting,
-    mixed: bool,
+    state: State,
     extra: impl FnOnce(&mut egui::Ui, &mut Setting),
-) -> Option<f64> {
-    let mut new = None;
+) -> Option<Edit> {
+    let mut edit = None;
     ui.horizontal(|ui| {
         name(ui, setting);
         extra(ui, setting);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            new = new.or(reset(ui, setting));
-            new = new.or(control(ui, setting, mixed));
+            edit = reset(ui, setting, state.changed).or(edit);
+            edit = control(ui, setting, state.mixed).or(edit);
         });
     });
     if setting.kind == Kind::Number {
-        new = new.or(slider(ui, setting, ui.available_width()));
+        ui.scope(|ui| {
+            // The rail belongs to the name above it.
+            ui.spacing_mut().interact_size.y = 13.0;
+            edit = slider(ui, setting, ui.available_width()).or(edit);
+        });
     }
     refusal(ui, setting);
-    new
+    edit
 }
 
 /// A parameter on one line, for the single elements of a group. `label` stands before it.
-pub fn narrow(ui: &mut egui::Ui, setting: &mut Setting, label: &str) -> Option<f64> {
-    let mut new = None;
+pub fn narrow(ui: &mut egui::Ui, setting: &mut Setting, label: &str) -> Option<Edit> {
+    let mut edit = None;
     ui.horizontal(|ui| {
         ui.add_space(8.0);
-        ui.add_sized(
-            vec2(62.0, 18.0),
-            egui::Label::new(RichText::new(label).weak()).halign(Align::LEFT).selectable(false),
-        )
-        .on_hover_text(&setting.path);
+        let label = egui::Label::new(RichText::new(label).weak()).halign(Align::LEFT).selectable(false);
+        ui.add_sized(vec2(62.0, 18.0), label).on_hover_text(&setting.path);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            new = new.or(reset(ui, setting));
-            new = new.or(control(ui, setting, false));
+            edit = reset(ui, setting, setting.value != setting.default).or(edit);
+            edit = control(ui, setting, false).or(edit);
             let width = ui.available_width();
-            new = new.or(slider(ui, setting, width));
+            edit = slider(ui, setting, width).or(edit);
         });
     });
     refusal(ui, setting);
-    new
+    edit
 }
 
 /// The reason why the last value was not taken.
@@ -104,18 +129,18 @@ fn name(ui: &mut egui::Ui, setting: &Setting) {
     let help =
         if setting.help.is_empty() { setting.path.clone() } else { format!("{}\n{}", setting.help, setting.path) };
     ui.label(setting.label.as_str()).on_hover_text(help);
-    if !setting.unit.is_empty() {
+    if !setting.unit.is_empty() && setting.kind == Kind::Number {
         ui.label(RichText::new(&setting.unit).small().weak());
     }
 }
 
-fn control(ui: &mut egui::Ui, setting: &mut Setting, mixed: bool) -> Option<f64> {
+fn control(ui: &mut egui::Ui, setting: &mut Setting, mixed: bool) -> Option<Edit> {
     if setting.kind == Kind::Toggle {
         let mut on = setting.value != 0.0;
         let response = ui.checkbox(&mut on, "");
         let label = setting.label.clone();
         response.widget_info(|| WidgetInfo::selected(WidgetType::Checkbox, true, on, &label));
-        return response.changed().then_some(f64::from(u8::from(on)));
+        return response.changed().then_some(Edit::Value(f64::from(u8::from(on))));
     }
     let shown = if mixed { "mixed".into() } else { setting.text() };
     let entered = field(ui, &mut setting.draft, shown, &setting.label.clone(), FIELD)?;
@@ -125,7 +150,7 @@ fn control(ui: &mut egui::Ui, setting: &mut Setting, mixed: bool) -> Option<f64>
     match setting.parse(&entered) {
         Ok(value) => {
             setting.refusal = None;
-            (mixed || value != setting.value).then_some(value)
+            (mixed || value != setting.value).then_some(Edit::Value(value))
         }
         Err(reason) => {
             setting.refusal = Some(reason);
@@ -134,7 +159,7 @@ fn control(ui: &mut egui::Ui, setting: &mut Setting, mixed: bool) -> Option<f64>
     }
 }
 
-fn slider(ui: &mut egui::Ui, setting: &Setting, width: f32) -> Option<f64> {
+fn slider(ui: &mut egui::Ui, setting: &Setting, width: f32) -> Option<Edit> {
     ui.spacing_mut().slider_width = width;
     let mut value = setting.value;
     let slider = egui::Slider::new(&mut value, setting.range.clone())
@@ -145,11 +170,10 @@ fn slider(ui: &mut egui::Ui, setting: &Setting, width: f32) -> Option<f64> {
     response.widget_info(|| WidgetInfo::slider(true, setting.value, &setting.label));
     // A slider's own digits say more than its width in pixels can mean.
     let value = number_text(value).parse().unwrap_or(value);
-    (response.changed() && value != setting.value).then_some(value)
+    (response.changed() && value != setting.value).then_some(Edit::Value(value))
 }
 
-fn reset(ui: &mut egui::Ui, setting: &mut Setting) -> Option<f64> {
-    let changed = setting.value != setting.default;
+fn reset(ui: &mut egui::Ui, setting: &mut Setting, changed: bool) -> Option<Edit> {
     let button = egui::Button::new("↺").min_size(vec2(RESET, 0.0)).frame(false);
     let response = ui.add_enabled(changed || setting.refusal.is_some(), button);
     let label = format!("reset {}", setting.label);
@@ -159,5 +183,5 @@ fn reset(ui: &mut egui::Ui, setting: &mut Setting) -> Option<f64> {
         return None;
     }
     setting.refusal = None;
-    changed.then_some(setting.default)
+    changed.then_some(Edit::Reset)
 }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use bevy::ecs::prelude::*;
 
-use super::{gauge::Gauge, setting::Setting};
+use super::{gauge::Gauge, row::Edit, setting::Setting};
 use crate::mechanics::integrators::Method;
 
 /// At most this many messages are kept; older ones go.
@@ -162,6 +162,16 @@ impl Settings {
             setting.refusal = None;
         }
         self.actions.push(Action::Set { path: path.into(), value });
+    }
+
+    /// Does to the parameter at `path` what was done to its row.
+    pub(super) fn edit(&mut self, path: &str, edit: Edit) {
+        let Some(setting) = self.get(path) else { return };
+        let value = match edit {
+            Edit::Value(value) => value,
+            Edit::Reset => setting.default,
+        };
+        self.request(path, value);
     }
 
     /// Stops time or lets it go on.

@@ -3,7 +3,7 @@
 use bevy_egui::egui::{self, RichText};
 
 use super::{
-    row,
+    row::{self, State},
     setting::number_text,
     settings::{Action, Settings},
 };
@@ -61,8 +61,8 @@ pub fn slow_motion(settings: &mut Settings) {
 
 fn parameter(ui: &mut egui::Ui, settings: &mut Settings, path: &str) {
     let Some(setting) = settings.get_mut(path) else { return };
-    if let Some(value) = row::wide(ui, setting, false, |_, _| {}) {
-        settings.request(path, value);
+    if let Some(edit) = row::wide(ui, setting, State::of(setting), |_, _| {}) {
+        settings.edit(path, edit);
     }
 }
 
