@@ -10,7 +10,7 @@ use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_m
 use wriggle::{
     creatures::{Creature, GardenWorm, Pose},
     mechanics::integrators::Method,
-    physics::{Clock, Cost, PhysicsPlugin},
+    physics::{Clock, Cost, PhysicsPlugin, Ticks},
 };
 
 const STEPS_A_TICK: u64 = 94;
@@ -18,7 +18,7 @@ const STEPS_A_TICK: u64 = 94;
 /// An app of `count` garden worms, all a little different, that has settled for a few ticks.
 fn worms(count: usize, method: Method) -> App {
     let mut app = App::new();
-    app.add_plugins((MinimalPlugins, PhysicsPlugin::new(Update)));
+    app.add_plugins((MinimalPlugins, PhysicsPlugin::new(Ticks)));
     app.world_mut().resource_mut::<Clock>().set_steps_per_tick(STEPS_A_TICK);
     for i in 0..count {
         let pose = Pose { at: bevy::math::DVec3::Z * i as f64, heading: 0.0 };
@@ -32,7 +32,7 @@ fn worms(count: usize, method: Method) -> App {
         }
     }
     for _ in 0..3 {
-        app.update();
+        app.world_mut().run_schedule(Ticks);
     }
     app
 }
@@ -54,14 +54,16 @@ fn benchmarks(c: &mut Criterion) {
             }
             let cost = |app: &App| app.world().resource::<Cost>().spring_updates;
             let before = cost(&app);
-            app.update();
+            app.world_mut().run_schedule(Ticks);
             group.throughput(Throughput::Elements(cost(&app) - before));
-            group.bench_function(BenchmarkId::new(method.name(), count), |b| b.iter(|| black_box(&mut app).update()));
+            group.bench_function(BenchmarkId::new(method.name(), count), |b| {
+                b.iter(|| black_box(&mut app).world_mut().run_schedule(Ticks))
+            });
         }
     }
     let mut idle = worms(0, Method::SemiImplicitEuler);
     group.throughput(Throughput::Elements(1));
-    group.bench_function("idle scene", |b| b.iter(|| black_box(&mut idle).update()));
+    group.bench_function("idle scene", |b| b.iter(|| black_box(&mut idle).world_mut().run_schedule(Ticks)));
     group.finish();
 }
 

@@ -4,7 +4,7 @@ use std::io::Write;
 
 use bevy::{
     app::{TaskPoolOptions, TaskPoolPlugin, TaskPoolThreadAssignmentPolicy},
-    ecs::message::{MessageCursor, Messages},
+    ecs::message::Messages,
     prelude::*,
 };
 
@@ -12,14 +12,13 @@ use super::{CliError, Outcome};
 use crate::{
     body::Particles,
     creatures::FileError,
-    physics::{BodyFrozen, Clock, Cost, Frozen, PhysicsPlugin, Plan},
+    physics::{BodyFrozen, Clock, Cost, Frozen, PhysicsPlugin, Plan, Ticks},
     scenes::{self, LoadedScene, SceneBodies, garden},
 };
 
 /// An app without a renderer that holds one scene and steps when it is told to.
 pub struct Headless {
     app: App,
-    frozen: MessageCursor<BodyFrozen>,
     warned: bool,
 }
 
@@ -34,11 +33,11 @@ impl Headless {
         let threads = threads.unwrap_or_else(bevy::tasks::available_parallelism);
         let task_pool_options = pools_of(threads);
         app.add_plugins(MinimalPlugins.set(TaskPoolPlugin { task_pool_options }));
-        app.add_plugins(PhysicsPlugin::new(Update));
+        app.add_plugins(PhysicsPlugin::new(Ticks));
         app.finish();
         app.cleanup();
         scenes::open(app.world_mut(), scene)?;
-        Ok(Self { app, frozen: MessageCursor::default(), warned: false })
+        Ok(Self { app, warned: false })
     }
 
     /// The world.
@@ -77,10 +76,9 @@ impl Headless {
     /// Takes exactly `steps`, and gives back what has to be said about them.
     pub fn step(&mut self, steps: u64) -> Vec<String> {
         self.world_mut().resource_mut::<Clock>().set_steps_per_tick(steps);
-        self.app.update();
+        self.world_mut().run_schedule(Ticks);
         let mut said = self.unstable();
-        let messages = self.app.world().resource::<Messages<BodyFrozen>>();
-        said.extend(self.frozen.read(messages).map(|frozen| frozen.text.clone()));
+        said.extend(self.world_mut().resource_mut::<Messages<BodyFrozen>>().drain().map(|frozen| frozen.text));
         said
     }
 

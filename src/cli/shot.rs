@@ -2,12 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use bevy::ecs::{message::Messages, schedule::ScheduleLabel};
+use bevy::ecs::message::Messages;
 use clap::Args;
 
 use super::{CliError, Outcome, values};
 use crate::{
-    physics::{BodyFrozen, Clock, PhysicsPlugin},
+    physics::{BodyFrozen, Clock, PhysicsPlugin, Ticks},
     scenes::{self, ScenesPlugin},
     view::Shot,
 };
@@ -32,10 +32,6 @@ pub(super) fn shot(arguments: &ShotArguments) -> Result<Outcome, CliError> {
     let steps = values::steps_of_flag("--at", arguments.at, scene.file.clock.dt()).map_err(CliError::Usage)?;
     draw(scene, steps, arguments.size, &arguments.out)
 }
-
-/// Ticks of a scene that is drawn when it has reached its time.
-#[derive(Clone, Debug, Eq, Hash, PartialEq, ScheduleLabel)]
-struct Ticks;
 
 /// Draws `scene` after `steps`.
 fn draw(scene: scenes::LoadedScene, steps: u64, size: (u32, u32), out: &Path) -> Result<Outcome, CliError> {

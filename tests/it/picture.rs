@@ -1,17 +1,13 @@
 //! One picture of the garden at two times, looked at coarsely: what should be where, by colour and coverage.
 
-use bevy::{camera::Camera, ecs::schedule::ScheduleLabel, prelude::*};
+use bevy::{camera::Camera, prelude::*};
 use wriggle::{
-    physics::{Clock, PhysicsPlugin, Shown},
+    physics::{Clock, PhysicsPlugin, Shown, Ticks},
     scenes::{self, ScenesPlugin},
     view::{Picture, Quality, SceneCamera, Shot, ShotError, adapter},
 };
 
 const SIZE: (u32, u32) = (320, 180);
-
-/// The physics runs when the test asks for it, and not with the frames.
-#[derive(Clone, Debug, Eq, Hash, PartialEq, ScheduleLabel)]
-struct Ticks;
 
 /// Opens the garden as it is shipped, without a window, at time 0.
 fn garden() -> Result<Shot, ShotError> {
