@@ -259,8 +259,8 @@ impl<R: Real, const D: usize> Model<R, D> {
         self.springs.iter().position(|spring| {
             let [a, b] = spring.ends.map(|end| state.position[end as usize]);
             let square: f64 = (0..D).map(|axis| b[axis].lane(lane) - a[axis].lane(lane)).map(|d| d * d).sum();
-            // Not `>`: a length that is not a number has exploded, too.
-            !(square.sqrt() < spring.longest.lane(lane))
+            let length = square.sqrt();
+            length.is_nan() || length >= spring.longest.lane(lane)
         })
     }
 

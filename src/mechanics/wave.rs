@@ -5,7 +5,7 @@ use super::Real;
 /// Coefficients (−1)^k (2π)^(2k+1)/(2k+1)! of the sine's series in cycles, correctly rounded. The first term left out is below 2e-18 on a
 /// quarter cycle.
 const SERIES: [f64; 11] = [
-    6.283185307179586,
+    core::f64::consts::TAU,
     -41.34170224039976,
     81.60524927607506,
     -76.70585975306139,

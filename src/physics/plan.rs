@@ -3,7 +3,11 @@
 use core::hash::{Hash, Hasher};
 use std::hash::DefaultHasher;
 
-use bevy::{ecs::prelude::*, log::warn, prelude::Name};
+use bevy::{
+    ecs::{prelude::*, query::QueryData},
+    log::warn,
+    prelude::Name,
+};
 
 use crate::{
     body::{Gravity, Ground, Muscles, Particles, SpineFriction, Springs},
@@ -12,36 +16,29 @@ use crate::{
 
 use super::{Clock, Frozen};
 
-/// The components of one body that physics reads.
-pub(super) type Parts = (
-    &'static Springs,
-    Option<&'static Muscles>,
-    Option<&'static SpineFriction>,
-    Option<&'static Gravity>,
-    Option<&'static Ground>,
-    &'static Method,
-);
+/// The components of one body, beside its particles, that physics reads.
+#[derive(QueryData)]
+pub(super) struct Parts {
+    springs: &'static Springs,
+    muscles: Option<&'static Muscles>,
+    friction: Option<&'static SpineFriction>,
+    gravity: Option<&'static Gravity>,
+    ground: Option<&'static Ground>,
+    method: &'static Method,
+}
 
-/// Borrows a body's components for mechanics.
-pub(super) fn body_parts<'a>(
-    particles: &'a Particles,
-    (springs, muscles, friction, gravity, ground, method): (
-        &'a Springs,
-        Option<&'a Muscles>,
-        Option<&'a SpineFriction>,
-        Option<&'a Gravity>,
-        Option<&'a Ground>,
-        &'a Method,
-    ),
-) -> BodyParts<'a> {
-    BodyParts {
-        particles,
-        springs,
-        muscles,
-        friction,
-        gravity: gravity.copied(),
-        ground: ground.copied(),
-        method: *method,
+impl PartsItem<'_, '_> {
+    /// Borrows the body for mechanics.
+    pub(super) fn body<'a>(&'a self, particles: &'a Particles) -> BodyParts<'a> {
+        BodyParts {
+            particles,
+            springs: self.springs,
+            muscles: self.muscles,
+            friction: self.friction,
+            gravity: self.gravity.copied(),
+            ground: self.ground.copied(),
+            method: *self.method,
+        }
     }
 }
 
@@ -81,7 +78,7 @@ type Changes = Or<(
 /// Plans every body that was changed.
 pub(super) fn plan(clock: Res<Clock>, mut bodies: Query<(&Particles, Parts, &mut Plan), Changes>) {
     for (particles, parts, mut plan) in &mut bodies {
-        let body = body_parts(particles, parts);
+        let body = parts.body(particles);
         plan.misfit = misfit(&body);
         if plan.misfit.is_some() {
             continue;
@@ -98,7 +95,7 @@ pub(super) fn watch_limit(
     mut bodies: Query<(Option<&Name>, &Particles, Parts, &mut Plan), Without<Frozen>>,
 ) {
     for (name, particles, parts, mut plan) in &mut bodies {
-        let body = body_parts(particles, parts);
+        let body = parts.body(particles);
         if plan.misfit.is_none() && !body.on_axis() {
             let stretched = is_stretched(&body, clock.time());
             if stretched != plan.stretched {

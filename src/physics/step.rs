@@ -9,12 +9,12 @@ use std::time::Instant;
 
 use crate::{
     body::{ParticleId, Particles},
-    mechanics::{Advance, BodyParts, Lanes, Model, Real, State, Timeline, integrators::Method},
+    mechanics::{Advance, BodyParts, Lanes, Model, Real, State, Timeline},
 };
 
 use super::{
     Clock, Frozen, Plan,
-    plan::{Parts, body_parts},
+    plan::{Parts, PartsItem},
     watch::{Explosion, Verdict},
 };
 
@@ -37,24 +37,15 @@ pub struct Cost {
 /// A body on its way through a tick.
 struct Item<'a> {
     particles: Mut<'a, Particles>,
-    parts: Components<'a>,
+    parts: PartsItem<'a, 'a>,
     plan: &'a Plan,
     verdict: Mut<'a, Verdict>,
     on_axis: bool,
 }
 
-type Components<'a> = (
-    &'a crate::body::Springs,
-    Option<&'a crate::body::Muscles>,
-    Option<&'a crate::body::SpineFriction>,
-    Option<&'a crate::body::Gravity>,
-    Option<&'a crate::body::Ground>,
-    &'a Method,
-);
-
 impl Item<'_> {
     fn body(&self) -> BodyParts<'_> {
-        body_parts(&self.particles, self.parts)
+        self.parts.body(&self.particles)
     }
 
     fn matches(&self, other: &Self) -> bool {
@@ -86,7 +77,7 @@ pub(super) fn step(
                 *verdict = Verdict(Some(Explosion { step, time, particle: ParticleId(0), reason }));
                 return None;
             }
-            let body = body_parts(&particles, parts);
+            let body = parts.body(&particles);
             cost.force_evaluations += steps * body.method.evaluations();
             cost.spring_updates += steps * body.method.evaluations() * body.springs.len() as u64;
             let on_axis = body.on_axis();

@@ -220,3 +220,31 @@ fn play_without_a_display_runs_the_garden_headless() {
     let said = stdout(&output);
     assert!(said.contains("t =  0.0") && said.contains("t = 60.0") && said.contains("before its door"), "{said}");
 }
+
+#[test]
+fn the_number_of_threads_changes_no_bits() {
+    use core::fmt::Write;
+    // Worms that all differ, half of them off the axis, so that lanes, single bodies and both dimensions take part.
+    let folder = tempfile::tempdir().unwrap();
+    let (mut creatures, mut set) = (String::new(), String::new());
+    for i in 0..64 {
+        let heading = [0, 17][i % 2];
+        writeln!(creatures, "(name: \"w{i}\", creature: \"garden-worm\", at: (0, 0, {i}), heading: {heading}),")
+            .unwrap();
+        writeln!(set, "\"w{i}.springs.stiffness\": {},", 1.0 + 0.01 * i as f64).unwrap();
+    }
+    let scene = format!(
+        "Scene(version: 1, title: \"Crowd\", creatures: [{creatures}], clock: (dt: 0.005, time_scale: 3), set: {{{set}}})"
+    );
+    std::fs::write(folder.path().join("crowd.scene.ron"), scene).unwrap();
+    let run = |threads: &str| {
+        let file = folder.path().join("crowd.scene.ron");
+        let result = json(&["run", file.to_str().unwrap(), "--for", "60", "--threads", threads]);
+        assert_eq!(result["threads"].to_string(), threads, "the pool has the size that was asked for");
+        assert_eq!(result["bodies"].as_array().unwrap().len(), 64);
+        assert!(result["bodies"][63]["distance"].as_f64().unwrap() > 5.0);
+        result["hash"].as_str().unwrap().to_owned()
+    };
+    let hashes = ["1", "2", "8"].map(run);
+    assert!(hashes.iter().all(|hash| *hash == hashes[0]), "{hashes:?}");
+}

@@ -69,7 +69,7 @@ fn frame_rates_time_scales_and_pauses_change_no_bits() {
     app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_millis(17)));
     app.add_systems(Update, |mut frame: Local<u32>, mut time: ResMut<Time<Virtual>>| {
         *frame += 1;
-        if *frame % 5 == 0 { time.pause() } else { time.unpause() }
+        if frame.is_multiple_of(5) { time.pause() } else { time.unpause() }
     });
     assert_eq!(run(app, worms(9)), expected, "with pauses");
 }

@@ -1,10 +1,7 @@
 //! The garden worm's gait: A1 to A4 of its acceptance tests, at a step twenty times finer than it needs.
 
 use bevy::prelude::*;
-use wriggle::{
-    body::{Muscles, ParticleId},
-    physics::Clock,
-};
+use wriggle::{body::Muscles, physics::Clock};
 
 use crate::support::{Worm, center, particles, run_until, stepping_app};
 
@@ -146,8 +143,7 @@ fn a_changed_period_does_not_make_the_wave_jump() {
         let muscle = muscles.get(i).unwrap();
         muscles.set(i, wriggle::body::Muscle { period: 3.7, ..muscle }, time).unwrap();
     }
-    for i in 0..2 {
-        assert!((rest(&app, i as u32) - before[i]).abs() < 1e-12);
+    for (i, before) in (0..).zip(before) {
+        assert!((rest(&app, i) - before).abs() < 1e-12);
     }
-    assert!(particles(&app, body).position(ParticleId(0)).is_some());
 }
