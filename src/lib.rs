@@ -5,32 +5,7 @@
 //! - **Study methods**: [`mechanics`] has the forces, the methods of integration and their stability limits; `wriggle run` steps any scene
 //!   by any of them and records it.
 //!
-//! A worm in an app of your own:
-//!
-//! ```
-//! use bevy::{ecs::system::EntityCommand, prelude::*};
-//! use wriggle::prelude::*;
-//!
-//! fn main() -> Result<(), BodyError> {
-//!     let mut app = App::new();
-//!     app.add_plugins((MinimalPlugins, PhysicsPlugin::default()));
-//!     app.insert_resource(Clock::new(0.005, 3.0)?); // dt, and how many units of time a second shows
-//!
-//!     let body = Creature::from(GardenWorm::default()).body(Pose::default())?;
-//!     let worm = app.world_mut().spawn(Name::new("worm")).id();
-//!     body.apply(app.world_mut().entity_mut(worm));
-//!     // Anything with a Transform can follow a particle: a mesh, a camera, a label.
-//!     app.world_mut().spawn(FollowParticle { body: worm, particle: ParticleId(2) });
-//!
-//!     # app.insert_resource(bevy::time::TimeUpdateStrategy::FixedTimesteps(1));
-//!     for _ in 0..1000 {
-//!         app.update();
-//!     }
-//!     let crawled = app.world().get::<Particles>(worm).map(|worm| worm.center().x - 1.0);
-//!     assert!(crawled > Some(4.0), "{crawled:?}");
-//!     Ok(())
-//! }
-//! ```
+//! The README shows a worm in an app of your own, and how to write a creature file.
 //!
 //! # The map of the house
 //!
@@ -58,6 +33,11 @@ pub mod physics;
 pub mod scenes;
 #[cfg(feature = "window")]
 pub mod view;
+
+/// The README's example is compiled and run as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
 
 /// What a game needs to have creatures in it.
 pub mod prelude {

@@ -1,6 +1,6 @@
 //! `wriggle shot`: a scene at a time, drawn into a picture without a window.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use bevy::ecs::message::Messages;
 use clap::Args;
@@ -9,7 +9,7 @@ use super::{CliError, Outcome, values};
 use crate::{
     physics::{BodyFrozen, Clock, PhysicsPlugin, Ticks},
     scenes::{self, ScenesPlugin},
-    view::Shot,
+    view::{Quality, Shot},
 };
 
 #[derive(Args, Debug)]
@@ -22,6 +22,9 @@ pub(super) struct ShotArguments {
     /// Width and height in pixels
     #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = size)]
     size: (u32, u32),
+    /// How much to draw: low or high [default: high on a GPU]
+    #[arg(long, value_parser = quality)]
+    quality: Option<Quality>,
     /// Where to write the picture
     #[arg(long, value_name = "F.png")]
     out: PathBuf,
@@ -30,12 +33,12 @@ pub(super) struct ShotArguments {
 pub(super) fn shot(arguments: &ShotArguments) -> Result<Outcome, CliError> {
     let scene = scenes::load(&arguments.scene)?;
     let steps = values::steps_of_flag("--at", arguments.at, scene.file.clock.dt()).map_err(CliError::Usage)?;
-    draw(scene, steps, arguments.size, &arguments.out)
+    draw(scene, steps, arguments)
 }
 
 /// Draws `scene` after `steps`.
-fn draw(scene: scenes::LoadedScene, steps: u64, size: (u32, u32), out: &Path) -> Result<Outcome, CliError> {
-    let mut shot = Shot::new(size, None, |app| {
+fn draw(scene: scenes::LoadedScene, steps: u64, arguments: &ShotArguments) -> Result<Outcome, CliError> {
+    let mut shot = Shot::new(arguments.size, arguments.quality, |app| {
         app.add_plugins((PhysicsPlugin::new(Ticks), ScenesPlugin::new(scene)));
     })?;
     // The first frame opens the scene.
@@ -44,11 +47,19 @@ fn draw(scene: scenes::LoadedScene, steps: u64, size: (u32, u32), out: &Path) ->
     world.resource_mut::<Clock>().set_steps_per_tick(steps);
     world.run_schedule(Ticks);
     let frozen: Vec<_> = world.resource_mut::<Messages<BodyFrozen>>().drain().collect();
-    shot.picture()?.save(out)?;
+    shot.picture()?.save(&arguments.out)?;
     for BodyFrozen { text, .. } in &frozen {
         eprintln!("{text}");
     }
     Ok(if frozen.is_empty() { Outcome::Done } else { Outcome::Frozen })
+}
+
+fn quality(text: &str) -> Result<Quality, String> {
+    match text {
+        "low" => Ok(Quality::Low),
+        "high" => Ok(Quality::High),
+        _ => Err("give low or high".into()),
+    }
 }
 
 fn size(text: &str) -> Result<(u32, u32), String> {

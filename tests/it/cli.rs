@@ -248,3 +248,16 @@ fn the_number_of_threads_changes_no_bits() {
     let hashes = ["1", "2", "8"].map(run);
     assert!(hashes.iter().all(|hash| *hash == hashes[0]), "{hashes:?}");
 }
+
+#[test]
+fn the_creature_of_the_readme_crawls() {
+    let readme = include_str!("../../README.md");
+    let creature = readme.split("```ron").nth(1).and_then(|rest| rest.split("```").next()).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("ant.creature.ron");
+    std::fs::write(&file, creature).unwrap();
+    let result = json(&["run", file.to_str().unwrap(), "--for", "40"]);
+    let ant = &result["bodies"][0];
+    assert_eq!((ant["name"].as_str(), ant["status"].as_str()), (Some("ant"), Some("running")));
+    assert!(ant["center"][0].as_f64().unwrap() > 2.0, "{ant}");
+}

@@ -1,6 +1,6 @@
 //! The clock: whole steps, no drift, no jumps, pauses and single ticks.
 
-use bevy::{prelude::*, time::TimeUpdateStrategy};
+use bevy::{ecs::schedule::ScheduleLabel, prelude::*, time::TimeUpdateStrategy};
 use core::time::Duration;
 use wriggle::physics::{Clock, Restart};
 
@@ -103,4 +103,20 @@ fn restart_goes_back_to_the_start_and_runs_the_same_again() {
     assert_eq!((app.world().resource::<Clock>().step(), bits(particles(&app, body))), (0, start));
     app.world_mut().resource_mut::<Time<Virtual>>().unpause();
     assert_eq!(run(&mut app), first);
+}
+
+#[test]
+fn nothing_in_a_tick_is_ambiguous() {
+    use bevy::ecs::schedule::{LogLevel, ScheduleBuildSettings};
+    let mut app = crate::support::stepping_app(0.01, 1);
+    for schedule in [Update.intern(), PreUpdate.intern(), PostUpdate.intern()] {
+        app.edit_schedule(schedule, |schedule| {
+            schedule.set_build_settings(ScheduleBuildSettings {
+                ambiguity_detection: LogLevel::Error,
+                ..ScheduleBuildSettings::default()
+            });
+        });
+    }
+    app.world_mut().spawn(Worm::GARDEN.body());
+    app.update();
 }
