@@ -16,6 +16,7 @@ pub const LARGEST_FILE: u64 = 64 * 1024 * 1024;
 
 #[derive(RustEmbed)]
 #[folder = "assets/"]
+#[include = "*.ron"]
 struct Shipped;
 
 /// A kind of file.
