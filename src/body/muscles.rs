@@ -21,7 +21,7 @@ pub enum Wave {
 
 /// One muscle as plain data. It drives the rest length of a spring to
 /// L(t) = L·(1 + ρ·amplitude·wave(t/period − phase)), with ρ = min(1, t/(ramp·period)).
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Reflect)]
 pub struct Muscle {
     /// The spring that it drives.
     pub spring: SpringId,
@@ -78,7 +78,6 @@ impl Epoch {
 #[reflect(Component)]
 pub struct Muscles {
     springs: usize,
-    #[reflect(ignore)]
     muscles: Vec<Muscle>,
     epochs: Vec<Epoch>,
 }

@@ -68,7 +68,7 @@ fn flags_change_the_run() {
 fn a_recording_has_every_bit_and_ends_with_the_hashed_state() {
     let folder = TempDir::new().unwrap();
     let output =
-        in_folder(folder.path(), &["run", "race", "--for", "1.5", "--record", "r.csv", "--every", "0.5", "--json"]);
+        in_folder(folder.path(), &["run", "four-worms", "--for", "1.5", "--record", "r.csv", "--every", "0.5", "--json"]);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     let table = fs::read_to_string(folder.path().join("r.csv")).unwrap();
     let mut lines = table.lines();
@@ -89,7 +89,7 @@ fn a_recording_has_every_bit_and_ends_with_the_hashed_state() {
     let result: Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(result["hash"].as_str().unwrap(), format!("{hash:016x}"));
     // Recording changes nothing.
-    assert_eq!(json(&["run", "race", "--for", "1.5"])["hash"], result["hash"]);
+    assert_eq!(json(&["run", "four-worms", "--for", "1.5"])["hash"], result["hash"]);
 }
 
 #[test]
@@ -146,7 +146,7 @@ fn a_bad_file_is_reported_with_its_place() {
 
 #[test]
 fn a_frozen_body_is_said_and_exits_with_1() {
-    let output = wriggle(&["run", "race", "--dt", "2", "--for", "200", "--json"]);
+    let output = wriggle(&["run", "four-worms", "--dt", "2", "--for", "200", "--json"]);
     assert_eq!(output.status.code(), Some(1));
     let said = stderr(&output);
     assert!(said.contains("stability limit of `plain`") && said.contains("plain: particle"), "{said}");
@@ -181,7 +181,7 @@ fn files_are_found_as_given_then_under_assets_then_embedded() {
 #[test]
 fn list_names_scenes_creatures_methods_and_paths() {
     let all = stdout(&wriggle(&["list"]));
-    for word in ["garden  ", "Garden", "race  ", "garden-worm", "SemiImplicitEuler", "RungeKutta4"] {
+    for word in ["garden  ", "Garden", "four-worms  ", "garden-worm", "SemiImplicitEuler", "RungeKutta4"] {
         assert!(all.contains(word), "`{word}` is missing in {all}");
     }
     let paths = stdout(&wriggle(&["list", "--paths", "garden"]));

@@ -135,7 +135,7 @@ fn only_what_really_changes_is_marked_as_changed() {
 
 #[test]
 fn bodies_are_listed_in_the_order_of_the_scene() {
-    let mut world = world("race");
+    let mut world = world("four-worms");
     let names: Vec<_> = parameters::list(&mut world)
         .into_iter()
         .filter_map(|parameter| parameter.path.strip_suffix(".gravity").map(str::to_owned))

@@ -40,7 +40,7 @@ fn ask(app: &mut App, change: SceneChange) -> Option<String> {
 fn a_saved_scene_loads_with_the_same_parameters() {
     let folder = TempDir::new().unwrap();
     let path = folder.path().join("mine.scene.ron");
-    for scene in ["garden", "race", "raw-worm"] {
+    for scene in ["garden", "four-worms", "raw-worm"] {
         let mut world = World::new();
         open(&mut world, Path::new(scene));
         let body = world.query::<&Name>().single(&world).map_or("stiff".into(), |name| name.to_string());
@@ -157,7 +157,7 @@ fn another_scene_takes_the_place_of_the_last() {
     assert_eq!(app.world().resource::<CurrentScene>().file.title, "Garden");
     let guest = app.world_mut().spawn_empty().id();
     let member = app.world_mut().spawn(SceneMember).id();
-    assert_eq!(ask(&mut app, SceneChange::Load("race".into())), None);
+    assert_eq!(ask(&mut app, SceneChange::Load("four-worms".into())), None);
     assert_eq!(app.world().resource::<SceneBodies>().0.len(), 4);
     assert_eq!(app.world_mut().query::<&Particles>().iter(app.world()).count(), 4);
     assert!(app.world().get_entity(guest).is_ok() && app.world().get_entity(member).is_err());
