@@ -22,7 +22,7 @@ pub struct Particle {
     pub position: DVec3,
     /// Its velocity, in lengths a unit of time.
     pub velocity: DVec3,
-    /// Its mass, above zero.
+    /// Its mass, above zero; of a pinned particle it may be zero.
     pub mass: f64,
     /// A pinned particle never moves, whatever pulls at it; its inverse mass counts as zero.
     pub pinned: bool,
@@ -40,7 +40,9 @@ impl Particle {
                 check(value, Requirement::Finite, || format!("particles[{index}].{field}"))?;
             }
         }
-        check(self.mass, Requirement::Positive, || format!("particles[{index}].mass"))?;
+        // A pinned particle moves as little without a mass.
+        let requirement = if self.pinned { Requirement::NonNegative } else { Requirement::Positive };
+        check(self.mass, requirement, || format!("particles[{index}].mass"))?;
         if self.pinned && self.velocity != DVec3::ZERO {
             return Err(BodyError::Inconsistent {
                 path: format!("particles[{index}].velocity"),
@@ -164,10 +166,14 @@ impl Particles {
         &self.pinned
     }
 
-    /// The centre of mass.
+    /// The centre of mass; of particles that have none, the mean of their positions.
     pub fn center(&self) -> DVec3 {
+        let total: f64 = self.mass.iter().sum();
+        if total == 0.0 {
+            return self.positions().sum::<DVec3>() / self.len() as f64;
+        }
         let weighted: DVec3 = self.positions().zip(&self.mass).map(|(position, &mass)| position * mass).sum();
-        weighted / self.mass.iter().sum::<f64>()
+        weighted / total
     }
 
     /// The positions as arrays of x, y and z.

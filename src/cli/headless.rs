@@ -89,10 +89,12 @@ impl Headless {
         }
         let dt = self.clock().dt();
         let bodies = self.bodies();
-        let limits = bodies.filter_map(|(name, body, _)| Some((name, body.get::<Plan>()?.stability_limit())));
-        limits
-            .filter(|&(_, limit)| dt > limit)
-            .map(|(name, limit)| format!("warning: dt {dt} is above {limit:.4}, the stability limit of `{name}`"))
+        let plans = bodies.filter_map(|(name, body, _)| Some((name, body.get::<Plan>()?)));
+        plans
+            .filter(|(_, plan)| dt > plan.stability_limit())
+            .map(|(name, plan)| {
+                format!("warning: dt {dt} is above {}, the stability limit of `{name}`", plan.limit_text())
+            })
             .collect()
     }
 }

@@ -22,16 +22,18 @@ use crate::{
 
 /// What is run where `--for` does not say how long.
 const DEFAULT_TIME: f64 = 60.0;
+/// More steps than anybody waits for.
+const MOST_STEPS: f64 = 1e12;
 
 #[derive(Args, Debug)]
 pub(super) struct RunArguments {
     /// A scene or creature by name, or a file (`*.scene.ron`, `*.creature.ron`)
     scene: String,
     /// For how long, in simulated time; a whole number of dt [default: 60]
-    #[arg(long = "for", value_name = "T", value_parser = values::non_negative)]
+    #[arg(long = "for", allow_negative_numbers = true, value_name = "T", value_parser = values::non_negative)]
     time: Option<f64>,
     /// The step, in simulated time [default: the scene's]
-    #[arg(long, value_name = "DT", value_parser = values::positive)]
+    #[arg(long, allow_negative_numbers = true, value_name = "DT", value_parser = values::positive)]
     dt: Option<f64>,
     /// The method of integration [default: the scene's]
     #[arg(long, value_name = "NAME", value_parser = values::method)]
@@ -43,7 +45,7 @@ pub(super) struct RunArguments {
     #[arg(long, value_name = "F.csv")]
     record: Option<String>,
     /// How often to record, in simulated time; a whole number of dt [default: every step]
-    #[arg(long, value_name = "T", value_parser = values::positive, requires = "record")]
+    #[arg(long, allow_negative_numbers = true, value_name = "T", value_parser = values::positive, requires = "record")]
     every: Option<f64>,
     /// Print the result as one JSON object
     #[arg(long)]
@@ -114,7 +116,14 @@ fn lengths(arguments: &RunArguments, run: &Headless) -> Result<(u64, u64), CliEr
     let steps = match arguments.time {
         Some(time) => values::steps_of_flag("--for", time, dt).map_err(CliError::Usage)?,
         // What nobody asked for need not be met to the last bit.
-        None => (DEFAULT_TIME / dt).round() as u64,
+        None => match (DEFAULT_TIME / dt).round() {
+            steps if (1.0..=MOST_STEPS).contains(&steps) => steps as u64,
+            steps => {
+                return Err(CliError::Usage(format!(
+                    "{DEFAULT_TIME} units of time are {steps:e} steps of dt {dt:e}; say with --for how long to run"
+                )));
+            }
+        },
     };
     let interval = match (arguments.every, &arguments.record) {
         (Some(every), _) => match values::steps_of_flag("--every", every, dt).map_err(CliError::Usage)? {

@@ -1,6 +1,6 @@
 //! `wriggle shot`: a scene at a time, drawn into a picture without a window.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use bevy::ecs::message::Messages;
 use clap::Args;
@@ -31,6 +31,7 @@ pub(super) struct ShotArguments {
 }
 
 pub(super) fn shot(arguments: &ShotArguments) -> Result<Outcome, CliError> {
+    check_out(&arguments.out)?;
     let scene = scenes::load(&arguments.scene)?;
     let steps = values::steps_of_flag("--at", arguments.at, scene.file.clock.dt()).map_err(CliError::Usage)?;
     draw(scene, steps, arguments)
@@ -52,6 +53,20 @@ fn draw(scene: scenes::LoadedScene, steps: u64, arguments: &ShotArguments) -> Re
         eprintln!("{text}");
     }
     Ok(if frozen.is_empty() { Outcome::Done } else { Outcome::Frozen })
+}
+
+/// Finds out before a picture is drawn whether it can be written.
+fn check_out(out: &Path) -> Result<(), CliError> {
+    let place = out.display();
+    if out.extension().is_none_or(|extension| !extension.eq_ignore_ascii_case("png")) {
+        return Err(CliError::Usage(format!("--out {place}: give a file that ends in .png")));
+    }
+    match out.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() && !folder.is_dir() => {
+            Err(CliError::Usage(format!("--out {place}: there is no folder {}", folder.display())))
+        }
+        _ => Ok(()),
+    }
 }
 
 fn quality(text: &str) -> Result<Quality, String> {

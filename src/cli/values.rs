@@ -52,6 +52,9 @@ pub(super) fn whole_steps(time: f64, dt: f64) -> Option<u64> {
 pub(super) fn steps_of_flag(flag: &str, time: f64, dt: f64) -> Result<u64, String> {
     whole_steps(time, dt).ok_or_else(|| {
         let below = (time / dt).floor();
+        if below > 1e12 {
+            return format!("{flag} {time:e} is {below:e} steps of dt {dt:e}; give a shorter time or a larger dt");
+        }
         format!(
             "{flag} {time} is no whole number of steps of dt {dt}; the nearest that are: {} and {}",
             below * dt,

@@ -98,7 +98,9 @@ pub fn find(kind: FileKind, name: &str, beside: Option<&Path>) -> Result<Source,
         candidates.extend([folder.join(name), folder.join(&long)]);
     }
     candidates.extend([Path::new("assets").join(&long), Path::new("assets").join(kind.folder).join(&long)]);
-    candidates.dedup();
+    // A name that has its suffix is a candidate twice.
+    let mut seen = std::collections::HashSet::new();
+    candidates.retain(|path| seen.insert(path.clone()));
     if let Some(path) = candidates.iter().find(|path| fs::metadata(path).is_ok_and(|file| !file.is_dir())) {
         return Ok(Source::Disk(path.clone()));
     }

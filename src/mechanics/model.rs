@@ -164,6 +164,15 @@ pub struct Model<R, const D: usize> {
     pub(super) overstretched: R,
 }
 
+/// What has exploded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Explosion {
+    /// The particle that is not finite, or the faster end of the spring.
+    pub particle: usize,
+    /// The spring that is too long, if it is that.
+    pub spring: Option<usize>,
+}
+
 /// A spring longer than this many rest lengths has exploded.
 pub(super) const LONGEST_STRETCH: f64 = 10.0;
 
@@ -254,19 +263,25 @@ impl<R: Real, const D: usize> Model<R, D> {
         self.overstretched.lane(lane) != 0.0
     }
 
-    /// The first spring that is longer than ten rest lengths, or of no finite length, in a lane of `state`: its index.
-    pub fn exploded_spring(&self, state: &State<R, D>, lane: usize) -> Option<usize> {
-        self.springs.iter().position(|spring| {
+    /// What has exploded first in a lane of `state`: a particle that is not finite, or a spring that is longer than ten rest lengths.
+    pub fn explosion(&self, state: &State<R, D>, lane: usize) -> Option<Explosion> {
+        let finite = |row: &[R; D]| row.iter().all(|value| value.lane(lane).is_finite());
+        let lost = state.position.iter().zip(&state.velocity).position(|(x, v)| !(finite(x) && finite(v)));
+        let particle = lost.map(|particle| Explosion { particle, spring: None });
+        particle.or_else(|| self.exploded_spring(state, lane))
+    }
+
+    fn exploded_spring(&self, state: &State<R, D>, lane: usize) -> Option<Explosion> {
+        let spring = self.springs.iter().position(|spring| {
             let [a, b] = spring.ends.map(|end| state.position[end as usize]);
             let square: f64 = (0..D).map(|axis| b[axis].lane(lane) - a[axis].lane(lane)).map(|d| d * d).sum();
             let length = square.sqrt();
             length.is_nan() || length >= spring.longest.lane(lane)
-        })
-    }
-
-    /// The two particles of a spring.
-    pub fn spring_ends(&self, spring: usize) -> [u32; 2] {
-        self.springs[spring].ends
+        })?;
+        let ends = self.springs[spring].ends.map(|end| end as usize);
+        let speed = |end: usize| state.velocity[end].iter().map(|v| v.lane(lane)).map(|v| v * v).sum::<f64>();
+        let particle = if speed(ends[1]) > speed(ends[0]) { ends[1] } else { ends[0] };
+        Some(Explosion { particle, spring: Some(spring) })
     }
 }
 

@@ -41,6 +41,8 @@ impl Default for Clock {
 impl Clock {
     /// The largest time scale: beyond it a slow machine would never catch up.
     pub const LARGEST_TIME_SCALE: f64 = 1000.0;
+    /// The most steps that a tick takes for a time scale; with a dt that would need more, time passes more slowly than it should.
+    pub const MOST_STEPS_A_TICK: u64 = 100_000;
 
     /// A clock at time 0 with a step of `dt` that shows `time_scale` units of simulated time a second.
     ///
@@ -123,10 +125,14 @@ impl Clock {
         match self.pace {
             Pace::Steps(steps) => steps,
             Pace::TimeScale(scale) => {
-                self.carry += seconds * scale / self.timeline.dt;
-                let whole = self.carry.floor();
-                self.carry -= whole;
-                whole as u64
+                let due = self.carry + seconds * scale / self.timeline.dt;
+                if due >= Self::MOST_STEPS_A_TICK as f64 {
+                    // What cannot be caught up with is not carried on.
+                    self.carry = 0.0;
+                    return Self::MOST_STEPS_A_TICK;
+                }
+                self.carry = due.fract();
+                due as u64
             }
         }
     }

@@ -106,7 +106,7 @@ impl Plugin for PhysicsPlugin {
             ),
         );
         // Also while paused, when no tick runs.
-        app.add_systems(PreUpdate, restart::restart);
+        app.add_systems(PreUpdate, (restart::restart, plan::plan).chain());
 
         // Nothing else runs in it, and handing three systems from thread to thread costs more than they do.
         app.edit_schedule(Ticks, |schedule| {

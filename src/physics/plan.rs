@@ -35,7 +35,8 @@ impl PartsItem<'_, '_> {
             springs: self.springs,
             muscles: self.muscles,
             friction: self.friction,
-            gravity: self.gravity.copied(),
+            // Gravity of zero is none: it must not cost a body its axis.
+            gravity: self.gravity.copied().filter(|gravity| gravity.acceleration() > 0.0),
             ground: self.ground.copied(),
             method: *self.method,
         }
@@ -60,6 +61,12 @@ impl Plan {
     /// linearised body. Infinite for a body that cannot oscillate.
     pub fn stability_limit(&self) -> f64 {
         self.stability_limit
+    }
+
+    /// The stability limit with four decimals, or four digits where it is small.
+    pub fn limit_text(&self) -> String {
+        let limit = self.stability_limit;
+        if limit < 0.01 { format!("{limit:.3e}") } else { format!("{limit:.4}") }
     }
 }
 
@@ -109,9 +116,9 @@ pub(super) fn watch_limit(
         } else if plan.warned != Some(dt) {
             plan.warned = Some(dt);
             warn!(
-                "{}: dt {dt} is above the stability limit {:.4} of {}; expect it to explode, or choose a smaller dt",
+                "{}: dt {dt} is above the stability limit {} of {}; expect it to explode, or choose a smaller dt",
                 name.map_or("a body", Name::as_str),
-                plan.stability_limit,
+                plan.limit_text(),
                 body.method.name(),
             );
         }

@@ -15,7 +15,7 @@ use crate::{
 use super::{
     Clock, Frozen, Plan,
     plan::{Parts, PartsItem},
-    watch::{Explosion, Verdict},
+    watch::{Failure, Verdict},
 };
 
 /// How many bodies are stepped side by side: one AVX-512 register of f64, two of AVX, four of SSE2.
@@ -74,7 +74,7 @@ pub(super) fn step(
         .filter_map(|(particles, parts, plan, mut verdict)| {
             if let Some(reason) = plan.misfit.clone() {
                 let (step, time) = (range.start, timeline.time_at(range.start));
-                *verdict = Verdict(Some(Explosion { step, time, particle: ParticleId(0), reason }));
+                *verdict = Verdict(Some(Failure { step, time, particle: ParticleId(0), reason }));
                 return None;
             }
             let body = parts.body(&particles);
@@ -130,7 +130,7 @@ fn step_lanes<R: Real, const D: usize>(group: &mut [Item<'_>], timeline: Timelin
     let steps_to_take = steps.end - steps.start;
     Advance { model: &mut model, state: &mut state, method, timeline, first: steps.start, steps: steps_to_take }.run();
     for (lane, item) in group.iter_mut().enumerate() {
-        if model.has_exploded(lane) || model.exploded_spring(&state, lane).is_some() {
+        if model.has_exploded(lane) || model.explosion(&state, lane).is_some() {
             retrace::<D>(item, timeline, steps.clone());
         } else {
             state.write_lane(lane, item.particles.bypass_change_detection());
@@ -149,18 +149,14 @@ fn retrace<const D: usize>(item: &mut Item<'_>, timeline: Timeline, steps: Range
     for step in steps {
         let good = state.clone();
         Advance { model: &mut model, state: &mut state, method, timeline, first: step, steps: 1 }.run();
-        let Some(spring) = model.exploded_spring(&state, 0) else { continue };
-        let ends = model.spring_ends(spring);
-        let [a, b] = ends.map(|end| state.velocity[end as usize].iter().map(|v| v * v).sum::<f64>());
-        // The faster end, or the one that is not finite.
-        let particle = ParticleId(if b.is_nan() || b > a { ends[1] } else { ends[0] });
-        let reason = if state.position[particle.index()].iter().all(|x| x.is_finite()) {
-            format!("spring {spring} is longer than ten rest lengths")
-        } else {
-            "its position is not finite".into()
+        let Some(explosion) = model.explosion(&state, 0) else { continue };
+        let particle = ParticleId(explosion.particle as u32);
+        let reason = match explosion.spring {
+            Some(spring) => format!("spring {spring} is longer than ten rest lengths"),
+            None => "it is not finite".into(),
         };
         good.write_lane(0, item.particles.bypass_change_detection());
-        *item.verdict = Verdict(Some(Explosion { step: step + 1, time: timeline.time_at(step + 1), particle, reason }));
+        *item.verdict = Verdict(Some(Failure { step: step + 1, time: timeline.time_at(step + 1), particle, reason }));
         return;
     }
     state.write_lane(0, item.particles.bypass_change_detection());

@@ -11,9 +11,9 @@ use crate::body::ParticleId;
 
 use super::{Clock, Plan};
 
-/// When and where a body exploded.
+/// When and where a body failed, and why.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Explosion {
+pub(super) struct Failure {
     pub(super) step: u64,
     pub(super) time: f64,
     pub(super) particle: ParticleId,
@@ -22,7 +22,7 @@ pub(super) struct Explosion {
 
 /// What a tick's steps found, for the watch.
 #[derive(Clone, Component, Debug, Default)]
-pub struct Verdict(pub(super) Option<Explosion>);
+pub struct Verdict(pub(super) Option<Failure>);
 
 /// On a body that is not stepped any more, because it would not be finite, or a spring of it would be longer than ten rest lengths. It is as
 /// it was one step before. [`Restart`](super::Restart) thaws it.
@@ -56,16 +56,16 @@ pub(super) fn watch(
     mut commands: Commands,
 ) {
     for (body, name, plan, mut verdict) in &mut bodies {
-        let Some(Explosion { step, time, particle, reason }) = verdict.bypass_change_detection().0.take() else {
+        let Some(Failure { step, time, particle, reason }) = verdict.bypass_change_detection().0.take() else {
             continue;
         };
         let text = format!(
-            "{}: particle {} exploded at step {step} (time {time}): {reason}. dt is {}, the stability limit {:.4}. \
+            "{}: particle {} exploded at step {step} (time {time:.6}): {reason}. dt is {}, the stability limit {}. \
              The body is frozen in its last good state.",
             name.map_or("a body", Name::as_str),
             particle.0,
             clock.dt(),
-            plan.stability_limit(),
+            plan.limit_text(),
         );
         error!("{text}");
         messages.write(BodyFrozen { body, text });

@@ -58,7 +58,7 @@ fn write(mut contexts: EguiContexts, help: Res<KeyHelp>, following: Res<FollowWo
         return Ok(());
     }
     let context = contexts.ctx_mut()?;
-    let frame = egui::Frame::new().fill(Color32::from_black_alpha(110)).corner_radius(8).inner_margin(10);
+    let frame = egui::Frame::new().fill(Color32::from_black_alpha(190)).corner_radius(8).inner_margin(10);
     egui::Area::new("keys".into()).anchor(Align2::RIGHT_BOTTOM, [-12.0, -12.0]).interactable(false).show(
         context,
         |ui| {

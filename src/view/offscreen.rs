@@ -21,6 +21,7 @@ use super::{
     ViewPlugin,
     adapter::{NoAdapter, adapter},
     quality::Quality,
+    window::quiet_assets,
 };
 
 /// What the scene's camera draws into where there is no window.
@@ -79,6 +80,7 @@ impl Shot {
             DefaultPlugins
                 .set(window)
                 .set(render)
+                .set(quiet_assets())
                 .disable::<WinitPlugin>()
                 // One frame after the other, so that a picture is of the frame that asked for it.
                 .disable::<PipelinedRenderingPlugin>(),

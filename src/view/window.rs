@@ -6,6 +6,11 @@ use bevy::{
     window::{PresentMode, WindowResolution},
 };
 
+/// All assets are made in code or embedded, so there is no folder to watch, and none to warn of where it is missing.
+pub(super) fn quiet_assets() -> AssetPlugin {
+    AssetPlugin { watch_for_changes_override: Some(false), ..default() }
+}
+
 /// Bevy's default plugins with Wriggle's window: 1280 × 720, synchronised with the screen.
 pub fn window_plugins() -> PluginGroupBuilder {
     let window = Window {
@@ -15,5 +20,5 @@ pub fn window_plugins() -> PluginGroupBuilder {
         present_mode: PresentMode::AutoVsync,
         ..default()
     };
-    DefaultPlugins.set(WindowPlugin { primary_window: Some(window), ..default() })
+    DefaultPlugins.set(WindowPlugin { primary_window: Some(window), ..default() }).set(quiet_assets())
 }

@@ -120,3 +120,15 @@ fn nothing_in_a_tick_is_ambiguous() {
     app.world_mut().spawn(Worm::GARDEN.body());
     app.update();
 }
+
+#[test]
+fn a_tiny_dt_slows_time_down_and_does_not_hang_the_app() {
+    let mut app = ticking_app(1e-300, 1.0);
+    for _ in 0..4 {
+        app.update();
+    }
+    assert_eq!(app.world().resource::<Clock>().step(), 3 * Clock::MOST_STEPS_A_TICK);
+    app.world_mut().resource_mut::<Clock>().set_dt(0.001).unwrap();
+    app.update();
+    assert_eq!(app.world().resource::<Clock>().step(), 3 * Clock::MOST_STEPS_A_TICK + 15);
+}

@@ -174,3 +174,25 @@ fn the_plan_follows_every_parameter() {
     app.update();
     assert_ne!(limit(&app), euler);
 }
+
+#[test]
+fn the_plan_follows_a_parameter_while_the_app_is_paused() {
+    use bevy::prelude::*;
+    let mut app = crate::support::ticking_app(0.005, 3.0);
+    let body = app.world_mut().spawn(Worm::GARDEN.body()).id();
+    for _ in 0..5 {
+        app.update();
+    }
+    app.world_mut().resource_mut::<Time<Virtual>>().pause();
+    app.update();
+    let step = app.world().resource::<wriggle::physics::Clock>().step();
+    let mut springs = app.world_mut().get_mut::<Springs>(body).unwrap();
+    for i in 0..2 {
+        let id = wriggle::body::SpringId(i);
+        let stiff = Spring { stiffness: 1500.0, ..springs.get(id).unwrap() };
+        springs.set(id, stiff).unwrap();
+    }
+    app.update();
+    assert_eq!(app.world().resource::<wriggle::physics::Clock>().step(), step);
+    assert!(app.world().get::<Plan>(body).unwrap().stability_limit() < 0.05);
+}

@@ -36,14 +36,10 @@ fn an_exploding_worm_is_frozen_and_its_neighbour_is_not() {
             assert!(x[a].distance(x[b]) < 10.0, "the last good state is good: {x:?}");
         }
         let text = &messages(&mut app)[0].text;
-        let limit = app.world().get::<wriggle::physics::Plan>(wild).unwrap().stability_limit();
-        for part in [
-            "wild",
-            &format!("particle {}", frozen.particle.0),
-            &format!("step {}", frozen.step),
-            "0.05",
-            &format!("{limit:.4}"),
-        ] {
+        let limit = app.world().get::<wriggle::physics::Plan>(wild).unwrap().limit_text();
+        for part in
+            ["wild", &format!("particle {}", frozen.particle.0), &format!("step {}", frozen.step), "0.05", &limit]
+        {
             assert!(text.contains(part), "{text} does not name {part}");
         }
         assert!(app.world().get::<Frozen>(calm).is_none());
@@ -100,7 +96,7 @@ fn a_spring_of_no_length_pulls_nowhere_and_stays_finite() {
         worm.particles.set(wriggle::body::ParticleId(i), wriggle::body::Particle::at(bevy::math::DVec3::ZERO)).unwrap();
     }
     let on_axis = app.world_mut().spawn(worm.clone()).id();
-    let in_space = app.world_mut().spawn((worm, wriggle::body::Gravity::new(0.0).unwrap())).id();
+    let in_space = app.world_mut().spawn((worm, wriggle::body::Ground::Flat)).id();
     app.update();
     for body in [on_axis, in_space] {
         assert!(particles(&app, body).positions().all(|x| x == bevy::math::DVec3::ZERO));
@@ -115,4 +111,18 @@ fn a_muscle_never_drives_a_spring_below_the_least_rest_length() {
         |springs: &Springs, time| wriggle::mechanics::rest_length(springs, Some(&body.muscles), SpringId(0), time);
     assert_eq!(rest(&body.springs, 4.5), 0.4);
     assert!((rest(&body.springs, 1.5) - 8.0).abs() < 1e-14);
+}
+
+#[test]
+fn a_particle_without_springs_is_frozen_when_it_is_not_finite() {
+    let mut app = stepping_app(1.0, 100);
+    let particle = wriggle::body::Particle {
+        velocity: bevy::math::DVec3::X * 1e307,
+        ..wriggle::body::Particle::at(bevy::math::DVec3::ZERO)
+    };
+    let body = app.world_mut().spawn((Particles::new([particle]).unwrap(), Springs::default())).id();
+    app.update();
+    let frozen = app.world().get::<Frozen>(body).unwrap();
+    assert_eq!((frozen.particle.0, frozen.reason.as_str()), (0, "it is not finite"));
+    assert!(particles(&app, body).positions().all(|x| x.is_finite()));
 }
