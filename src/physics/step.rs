@@ -41,6 +41,8 @@ struct Item<'a> {
     plan: &'a Plan,
     verdict: Mut<'a, Verdict>,
     on_axis: bool,
+    /// How many steps it took: fewer than the tick's if it exploded.
+    taken: u64,
 }
 
 impl Item<'_> {
@@ -78,10 +80,8 @@ pub(super) fn step(
                 return None;
             }
             let body = parts.body(&particles);
-            cost.force_evaluations += steps * body.method.evaluations();
-            cost.spring_updates += steps * body.method.evaluations() * body.springs.len() as u64;
             let on_axis = body.on_axis();
-            Some(Item { particles, parts, plan, verdict, on_axis })
+            Some(Item { particles, parts, plan, verdict, on_axis, taken: steps })
         })
         .collect();
     items.sort_by_key(|item| (item.plan.topology, item.on_axis));
@@ -103,6 +103,12 @@ pub(super) fn step(
                 }
             });
         }
+    }
+    for item in &items {
+        let body = item.body();
+        let evaluations = item.taken * body.method.evaluations();
+        cost.force_evaluations += evaluations;
+        cost.spring_updates += evaluations * body.springs.len() as u64;
     }
     clock.advance(steps);
     cost.seconds = start.elapsed().as_secs_f64();
@@ -146,6 +152,7 @@ fn retrace<const D: usize>(item: &mut Item<'_>, timeline: Timeline, steps: Range
     let mut model = Model::<f64, D>::new(&body, [], timeline.dt);
     let mut state = State::new(body.particles.len());
     state.set_lane(0, body.particles);
+    let first = steps.start;
     for step in steps {
         let good = state.clone();
         Advance { model: &mut model, state: &mut state, method, timeline, first: step, steps: 1 }.run();
@@ -155,6 +162,7 @@ fn retrace<const D: usize>(item: &mut Item<'_>, timeline: Timeline, steps: Range
             Some(spring) => format!("spring {spring} is longer than ten rest lengths"),
             None => "it is not finite".into(),
         };
+        item.taken = step + 1 - first;
         good.write_lane(0, item.particles.bypass_change_detection());
         *item.verdict = Verdict(Some(Failure { step: step + 1, time: timeline.time_at(step + 1), particle, reason }));
         return;

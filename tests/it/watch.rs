@@ -53,6 +53,23 @@ fn an_exploding_worm_is_frozen_and_its_neighbour_is_not() {
 }
 
 #[test]
+fn what_a_frozen_body_cost_does_not_depend_on_the_ticks() {
+    let cost = |steps_a_tick: u64| {
+        let mut app = stepping_app(0.05, steps_a_tick);
+        let body = app.world_mut().spawn(Worm { stiffness: 1e6, ..Worm::GARDEN }.body()).id();
+        for _ in 0..100 / steps_a_tick {
+            app.update();
+        }
+        let frozen = app.world().get::<Frozen>(body).unwrap().step;
+        let cost = app.world().resource::<wriggle::physics::Cost>();
+        assert_eq!((cost.force_evaluations, cost.spring_updates), (frozen, 2 * frozen));
+    };
+    for steps_a_tick in [1, 10, 100] {
+        cost(steps_a_tick);
+    }
+}
+
+#[test]
 fn a_dt_above_the_limit_warns_and_does_not_freeze() {
     // Without muscles and at rest nothing moves, however large dt is.
     let mut app = stepping_app(10.0, 10);
