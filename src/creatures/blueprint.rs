@@ -72,8 +72,8 @@ pub struct RawParticle {
     /// Its velocity at the start. Left out: at rest.
     #[serde(default, deserialize_with = "numbers::vector")]
     pub velocity: (f64, f64, f64),
-    /// Its mass, above zero. Left out: 1.
-    #[serde(default = "one", deserialize_with = "numbers::positive")]
+    /// Its mass, above zero; of a pinned particle it may be zero. Left out: 1.
+    #[serde(default = "one", deserialize_with = "numbers::non_negative")]
     pub mass: f64,
     /// Whether it stays where it is. Left out: it moves.
     #[serde(default)]

@@ -158,7 +158,7 @@ fn bad_values_are_reported_with_line_column_field_and_what_is_right() {
         ),
         ("damping: 0.9, rest", "damping: NaN, rest", &[":4:", "springs[0].damping: NaN", "0 or more"]),
         ("rest_length: 1", "rest_length: 0", &[":4:", "springs[0].rest_length: 0", "above 0"]),
-        ("(1, 0, 0), mass: 1", "(1, 0, 0), mass: 0", &[":3:", "particles[1].mass: 0", "above 0"]),
+        ("(1, 0, 0), mass: 1", "(1, 0, 0), mass: -1", &[":3:", "particles[1].mass: -1", "0 or more"]),
         ("(2, 0, 0)", "(2, inf, 0)", &[":3:", "particles[2].position", "inf is not allowed", "finite"]),
         ("period: 2", "period: 0", &[":4:", "springs[0].muscle", "period: 0", "above 0"]),
         ("wave: Sine", "wave: Saw", &[":4:", "springs[0].muscle", "Saw", "Sine", "Square"]),
@@ -213,6 +213,8 @@ fn places_that_contradict_each_other_are_named() {
         ("[0, 1, 2])", "[0, 1, 7])", &["spine[2]: there is no particle 7"]),
         ("[0, 1, 2])", "[0, 1, 0])", &["spine[2]: names particle 0 a second time"]),
         ("[0, 1, 2])", "[])", &["friction: works along a spine", "give `spine:"]),
+        // Only a pinned particle may have none.
+        ("mass: 1)", "mass: 0)", &["particles[0].mass: 0 is not allowed", "above 0"]),
         ("mass: 1)", "velocity: (1, 0, 0), pinned: true)", &["particles[0].velocity: a pinned particle never moves"]),
     ] {
         assert!(RAW.contains(good));
@@ -223,6 +225,15 @@ fn places_that_contradict_each_other_are_named() {
     let here = "Creature(version: 1, body: Raw(particles: [(position: (0, 0, 0)), (position: (0, 0, 0))],
         springs: [(ends: (0, 1), stiffness: 1)]))";
     assert_says(&creature_problem(here), &["springs[0].rest_length: is left out", "same place", "give a rest_length"]);
+}
+
+#[test]
+fn a_pinned_particle_needs_no_mass() {
+    let creature = RAW.replacen("mass: 1)", "mass: 0, pinned: true)", 1);
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("held.creature.ron");
+    std::fs::write(&file, creature).unwrap();
+    assert!(wriggle::scenes::load(file.to_str().unwrap()).is_ok());
 }
 
 #[test]
