@@ -40,7 +40,7 @@ pub use traces::Traces;
 use crate::{
     physics::{BodyFrozen, Restart},
     scenes::{SceneChange, SceneProblem},
-    view::PointerOnPanel,
+    view::{CoveredLeft, PointerOnPanel},
 };
 
 /// How wide the panel is, in points.
@@ -69,6 +69,7 @@ impl Plugin for PanelPlugin {
             .init_resource::<bridge::Known>()
             .init_resource::<sampling::Meter>()
             .init_resource::<PointerOnPanel>()
+            .init_resource::<CoveredLeft>()
             .add_systems(PreUpdate, choose_camera.before(EguiPreUpdateSet::InitContexts))
             .add_systems(FixedPostUpdate, sampling::tick)
             .add_systems(Update, keys::keys)
@@ -76,7 +77,7 @@ impl Plugin for PanelPlugin {
                 PostUpdate,
                 (sampling::frame, bridge::listen, bridge::read).chain().before(EguiPostUpdateSet::EndPass),
             )
-            .add_systems(PostUpdate, (bridge::apply, say_pointer).after(EguiPostUpdateSet::ProcessOutput))
+            .add_systems(PostUpdate, (bridge::apply, say_pointer, say_width).after(EguiPostUpdateSet::ProcessOutput))
             .add_systems(EguiPrimaryContextPass, draw);
     }
 }
@@ -107,6 +108,11 @@ fn draw(mut contexts: EguiContexts, mut settings: ResMut<Settings>, traces: Res<
 /// A click on the panel is not one on the scene.
 fn say_pointer(egui: Res<EguiWantsInput>, mut on_panel: ResMut<PointerOnPanel>) {
     on_panel.set_if_neq(PointerOnPanel(egui.wants_any_pointer_input()));
+}
+
+/// The scene's middle is beside the panel.
+fn say_width(settings: Res<Settings>, mut covered: ResMut<CoveredLeft>) {
+    covered.set_if_neq(CoveredLeft(if settings.hidden { 0.0 } else { WIDTH }));
 }
 
 /// The whole panel.

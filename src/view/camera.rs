@@ -1,6 +1,6 @@
 //! The camera: orbit, pan, zoom, and following the worm.
 
-use bevy::{light::cluster::ClusterConfig, prelude::*, render::view::NoIndirectDrawing};
+use bevy::{camera::SubCameraView, light::cluster::ClusterConfig, prelude::*, render::view::NoIndirectDrawing};
 use bevy_panorbit_camera::{PanOrbitCamera, PanOrbitCameraPlugin, PanOrbitCameraSystemSet, TrackpadBehavior};
 
 use super::{half::HalfResolution, help::typing, offscreen::OffscreenTarget, quality::Quality};
@@ -15,6 +15,12 @@ use crate::{
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect, Resource)]
 #[reflect(Resource)]
 pub struct PointerOnPanel(pub bool);
+
+/// How wide a strip a panel covers at the left of the window, in logical pixels; 0 for none. The scene's middle is that of what stays free.
+/// Written by whoever draws panels.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Reflect, Resource)]
+#[reflect(Resource)]
+pub struct CoveredLeft(pub f32);
 
 /// The camera that shows the scene.
 #[derive(Clone, Component, Copy, Debug, Default, Reflect)]
@@ -34,13 +40,14 @@ const QUICKNESS: f32 = 3.5;
 pub(super) fn plugin(app: &mut App) {
     app.add_plugins(PanOrbitCameraPlugin)
         .init_resource::<PointerOnPanel>()
+        .init_resource::<CoveredLeft>()
         .init_resource::<FollowWorm>()
         .add_systems(Startup, spawn)
         .add_systems(
             Update,
             (take_place.run_if(resource_exists_and_changed::<CurrentScene>), toggle.run_if(not(typing))).chain(),
         )
-        .add_systems(PostUpdate, (leave_to_panel, follow).chain().before(PanOrbitCameraSystemSet));
+        .add_systems(PostUpdate, (leave_to_panel, follow, make_room).chain().before(PanOrbitCameraSystemSet));
 }
 
 fn spawn(quality: Res<Quality>, target: Option<Res<OffscreenTarget>>, mut commands: Commands) {
@@ -118,6 +125,22 @@ fn toggle(
 fn leave_to_panel(on_panel: Res<PointerOnPanel>, mut cameras: Query<&mut PanOrbitCamera, With<SceneCamera>>) {
     for mut orbit in &mut cameras {
         orbit.enabled = !on_panel.0;
+    }
+}
+
+/// Moves the picture beside a panel. What is culled on the side of the panel lies behind it.
+fn make_room(covered: Res<CoveredLeft>, mut cameras: Query<&mut Camera, With<SceneCamera>>) {
+    for mut camera in &mut cameras {
+        let view =
+            camera.logical_target_size().map(Vec2::as_uvec2).filter(|size| covered.0 > 0.0 && size.min_element() > 0);
+        let view = view.map(|size| SubCameraView {
+            full_size: size,
+            offset: Vec2::new(-0.5 * covered.0.min(size.x as f32), 0.0),
+            size,
+        });
+        if camera.sub_camera_view != view {
+            camera.sub_camera_view = view;
+        }
     }
 }
 

@@ -24,7 +24,7 @@ mod worm_parts;
 use bevy::{prelude::*, render::renderer::RenderAdapterInfo, winit::WinitPlugin};
 
 pub use adapter::{AdapterSummary, NoAdapter, adapter, display_available};
-pub use camera::{FollowWorm, PointerOnPanel, SceneCamera};
+pub use camera::{CoveredLeft, FollowWorm, PointerOnPanel, SceneCamera};
 pub use help::KeyHelp;
 pub use offscreen::{Picture, Shot, ShotError};
 pub use quality::Quality;

@@ -43,11 +43,19 @@ pub(crate) struct PaintKey {
     shadows: u8,
     both_sides: u8,
     sheer: u8,
+    glows: u8,
+    sheltered: u8,
 }
 
 impl From<&Paint> for PaintKey {
     fn from(paint: &Paint) -> Self {
-        Self { shadows: paint.shadows.into(), both_sides: (paint.finish.y > 0.0).into(), sheer: paint.sheer.into() }
+        Self {
+            shadows: paint.shadows.into(),
+            both_sides: (paint.finish.y > 0.0).into(),
+            sheer: paint.sheer.into(),
+            glows: (paint.finish.z > 0.5).into(),
+            sheltered: (paint.shelter.z > 0.0).into(),
+        }
     }
 }
 
@@ -102,18 +110,21 @@ impl Material for Paint {
         _layout: &MeshVertexBufferLayoutRef,
         key: MaterialPipelineKey<Self>,
     ) -> Result<(), SpecializedMeshPipelineError> {
-        if key.bind_group_data.shadows != 0
-            && let Some(fragment) = &mut descriptor.fragment
-        {
-            fragment.shader_defs.push("SHADOWS".into());
-        }
-        if key.bind_group_data.sheer != 0 {
-            descriptor.vertex.shader_defs.push("SHEER".into());
+        let paint = key.bind_group_data;
+        let defined = [
+            (paint.shadows, "SHADOWS"),
+            (paint.both_sides, "BOTH_SIDES"),
+            (paint.sheer, "SHEER"),
+            (paint.glows, "GLOWS"),
+            (paint.sheltered, "SHELTERED"),
+        ];
+        for (_, name) in defined.iter().filter(|(on, _)| *on != 0) {
+            descriptor.vertex.shader_defs.push((*name).into());
             if let Some(fragment) = &mut descriptor.fragment {
-                fragment.shader_defs.push("SHEER".into());
+                fragment.shader_defs.push((*name).into());
             }
         }
-        if key.bind_group_data.both_sides != 0 {
+        if paint.both_sides != 0 {
             descriptor.primitive.cull_mode = None;
         }
         Ok(())

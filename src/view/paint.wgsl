@@ -1,5 +1,7 @@
 // The one material of the garden: vertex colours under a warm sun and a blue sky. The fourth number of a vertex colour is how far the
 // wind moves the vertex. Cheap enough for a renderer without a GPU; the tone curve is applied here so that both qualities look alike.
+// What a paint does differently is a definition and not a test of a uniform: Mesa's software renderer compiles a shader again for each
+// value of a uniform that decides a branch, at every draw.
 
 #import bevy_pbr::{
     forward_io::{Vertex, VertexOutput},
@@ -13,9 +15,9 @@
 
 struct Paint {
     tint: vec4<f32>,
-    // x: gloss, y: light shining through, z: 1 where the colour glows by itself, w: how much fog it takes
+    // x: gloss, y: light shining through, z: whether it glows (GLOWS), w: how much fog it takes
     finish: vec4<f32>,
-    // x..y along the x axis is open to the light; beyond, it is dark within z (burrow and house). Off where z is 0.
+    // x..y along the x axis is open to the light; beyond, it is dark within z (burrow and house).
     shelter: vec4<f32>,
 }
 
@@ -71,13 +73,16 @@ fn fragment(in: VertexOutput, @builtin(front_facing) front: bool) -> @location(0
     let to_eye = view.world_position - in.world_position.xyz;
     let distance = length(to_eye);
     var color = albedo;
-    if (paint.finish.z < 0.5) {
+#ifndef GLOWS
+    {
         let eye = to_eye / distance;
         var normal = normalize(in.world_normal);
+#ifndef BOTH_SIDES
         // Leaves and blades are seen from both sides; their normals point up and stay.
-        if (!front && paint.finish.y == 0.0) {
+        if (!front) {
             normal = -normal;
         }
+#endif
         let to_sun = lights.directional_lights[0].direction_to_light;
         let facing = dot(normal, to_sun);
         var sunlight = mix(max(facing, 0.0), abs(facing) * 0.5 + 0.5 * max(facing, 0.0), paint.finish.y);
@@ -95,14 +100,17 @@ fn fragment(in: VertexOutput, @builtin(front_facing) front: bool) -> @location(0
         let shine = pow(max(dot(normal, half_way), 0.0), 40.0) * paint.finish.x * sunlight;
         let rim = pow(1.0 - max(dot(normal, eye), 0.0), 3.0) * paint.finish.x * 0.35;
         color = albedo * light + SUN * shine * 0.35 + SKY * rim;
-        if (paint.shelter.z > 0.0) {
+#ifdef SHELTERED
+        {
             let x = in.world_position.x;
             let inside = (1.0 - smoothstep(paint.shelter.x - 0.2, paint.shelter.x + 0.35, x))
                 + smoothstep(paint.shelter.y, paint.shelter.y + 0.7, x);
             let near = step(abs(in.world_position.z), paint.shelter.z);
             color *= 1.0 - 0.97 * min(inside, 1.0) * near;
         }
+#endif
     }
+#endif
     let fog = (1.0 - exp(-max(distance - 24.0, 0.0) * 0.0058)) * paint.finish.w;
     let shown = tone(mix(color, HAZE, fog));
 #ifdef SHEER
