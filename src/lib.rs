@@ -26,6 +26,7 @@
 pub mod body;
 pub mod cli;
 pub mod creatures;
+pub mod lab;
 pub mod mechanics;
 #[cfg(feature = "window")]
 pub mod panel;

@@ -12,6 +12,7 @@
 mod environment;
 mod error;
 mod friction;
+mod mass_damping;
 mod muscles;
 mod particles;
 mod springs;
@@ -19,6 +20,7 @@ mod springs;
 pub use environment::{Gravity, Ground};
 pub use error::{BodyError, Requirement, check};
 pub use friction::SpineFriction;
+pub use mass_damping::MassDamping;
 pub(crate) use muscles::Epoch;
 pub use muscles::{LEAST_REST_FRACTION, Muscle, Muscles, Wave};
 pub use particles::{Particle, ParticleId, Particles};

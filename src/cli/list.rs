@@ -67,15 +67,8 @@ fn names() -> Vec<Vec<String>> {
         row(name, kind, &source)
     }));
     rows.push(vec!["Methods (--method NAME):".into()]);
-    rows.extend(Method::ALL.map(|method| vec![format!("  {}", method.name()), title(method).into()]));
+    rows.extend(Method::ALL.map(|method| vec![format!("  {}", method.name()), method.about().summary.into()]));
     rows
-}
-
-fn title(method: Method) -> &'static str {
-    match method {
-        Method::SemiImplicitEuler => "velocity first, then position with the new velocity; the document's",
-        Method::RungeKutta4 => "classic, fourth order, with the friction rule in its stages",
-    }
 }
 
 fn row(name: String, title: String, source: &Source) -> Vec<String> {

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Deserializer, Serialize, de};
 
 use super::{GardenWorm, Look, MOST_PARTICLES, numbers, parse};
-use crate::body::{Ground, Wave};
+use crate::body::{Ground, MassDamping, Wave};
 
 /// A creature: what `*.creature.ron` holds.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -17,6 +17,9 @@ pub struct Creature {
     /// Friction along its spine. Left out: what its kind needs; a raw body without it feels none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub friction: Option<Friction>,
+    /// Damping in proportion to mass, as `Rate(c)` or as the `PerStep(λ)` of damped Verlet. Left out: none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub damping: Option<MassDamping>,
     /// The ground that it stands on where its file is run alone; a scene has its own. Left out: none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ground: Option<Ground>,
@@ -162,13 +165,13 @@ impl Creature {
 
 impl From<GardenWorm> for Creature {
     fn from(worm: GardenWorm) -> Self {
-        Self { version: 1, body: Plan::GardenWorm(worm), friction: None, ground: None, gravity: None }
+        Self { version: 1, body: Plan::GardenWorm(worm), friction: None, damping: None, ground: None, gravity: None }
     }
 }
 
 impl From<RawBody> for Creature {
     fn from(raw: RawBody) -> Self {
-        Self { version: 1, body: Plan::Raw(raw), friction: None, ground: None, gravity: None }
+        Self { version: 1, body: Plan::Raw(raw), friction: None, damping: None, ground: None, gravity: None }
     }
 }
 

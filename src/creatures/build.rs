@@ -9,7 +9,7 @@ use bevy::{
 
 use super::{Creature, Friction, GardenWorm, Look, Plan, RawBody, RawParticle};
 use crate::body::{
-    BodyError, Muscle, Muscles, Particle, ParticleId, Particles, SpineFriction, Spring, SpringId, Springs,
+    BodyError, MassDamping, Muscle, Muscles, Particle, ParticleId, Particles, SpineFriction, Spring, SpringId, Springs,
 };
 
 /// Where a creature is put, and which way it looks.
@@ -52,6 +52,8 @@ pub struct Body {
     pub muscles: Option<Muscles>,
     /// Friction along its spine, if it feels any.
     pub friction: Option<SpineFriction>,
+    /// Its damping by what surrounds it, if any.
+    pub damping: Option<MassDamping>,
     /// How it wants to be drawn.
     pub look: Look,
 }
@@ -66,6 +68,9 @@ impl EntityCommand for Body {
         }
         if let Some(friction) = self.friction {
             entity.insert(friction);
+        }
+        if let Some(damping) = self.damping {
+            entity.insert(damping);
         }
     }
 }
@@ -92,7 +97,12 @@ impl Creature {
             // The spine is checked even where nothing uses it, so that a mistake in it does not wait for the friction.
             SpineFriction::new(raw.spine.iter().copied().map(ParticleId), &particles)?;
         }
-        Ok(Body { particles, springs, muscles, friction, look: self.look() })
+        let damping = match self.damping {
+            None => None,
+            Some(MassDamping::Rate(rate)) => Some(MassDamping::rate(rate)?),
+            Some(MassDamping::PerStep(part)) => Some(MassDamping::per_step(part)?),
+        };
+        Ok(Body { particles, springs, muscles, friction, damping, look: self.look() })
     }
 }
 

@@ -2,7 +2,10 @@
 
 use super::{
     Model, Real, State,
-    integrators::{Integrator, Method, RungeKutta4, SemiImplicitEuler},
+    integrators::{
+        DampedVerlet, ExplicitEuler, Integrator, Method, RungeKutta2, RungeKutta4, SemiImplicitEuler, StormerVerlet,
+        Xpbd,
+    },
 };
 
 /// Which time each step has: t = t_base + (n − n_base)·dt with a whole number n, so that time does not drift.
@@ -63,6 +66,11 @@ impl<R: Real, const D: usize> pulp::NullaryFnOnce for Advance<'_, R, D> {
     fn call(self) {
         match self.method {
             Method::SemiImplicitEuler => self.run_with::<SemiImplicitEuler<R, D>>(),
+            Method::ExplicitEuler => self.run_with::<ExplicitEuler<R, D>>(),
+            Method::StormerVerlet => self.run_with::<StormerVerlet<R, D>>(),
+            Method::DampedVerlet => self.run_with::<DampedVerlet<R, D>>(),
+            Method::RungeKutta2 => self.run_with::<RungeKutta2<R, D>>(),
+            Method::Xpbd => self.run_with::<Xpbd<R, D>>(),
             Method::RungeKutta4 => self.run_with::<RungeKutta4<R, D>>(),
         }
     }

@@ -30,11 +30,9 @@ fn driven<R: Real>(rest_length: R, drive: R) -> R {
 }
 
 impl<R: Real, const D: usize> Model<R, D> {
-    /// Acceleration of every particle at `time`: springs f = k(L − l) − D·dl/dt along the line of their ends, rest lengths driven to that
-    /// time, and gravity. A spring of no length has no direction and pulls nowhere.
+    /// Drives all rest lengths to `time`.
     #[inline(always)]
-    pub fn acceleration(&mut self, time: f64, position: &[[R; D]], velocity: &[[R; D]], acceleration: &mut [[R; D]]) {
-        let zero = R::splat(0.0);
+    pub(super) fn drive_muscles(&mut self, time: f64) {
         for (rest, spring) in self.rest.iter_mut().zip(&self.springs) {
             *rest = spring.rest_length;
         }
@@ -42,6 +40,29 @@ impl<R: Real, const D: usize> Model<R, D> {
             let rest = &mut self.rest[muscle.spring as usize];
             *rest = driven(*rest, drive(muscle, time));
         }
+    }
+
+    /// Acceleration of every particle at `time`: [`forces`](Self::forces), and damping in proportion to mass.
+    #[inline(always)]
+    pub fn acceleration(&mut self, time: f64, position: &[[R; D]], velocity: &[[R; D]], acceleration: &mut [[R; D]]) {
+        self.forces(time, position, velocity, acceleration);
+        let Some(damping) = self.damping else { return };
+        let zero = R::splat(0.0);
+        for ((row, v), &inverse_mass) in acceleration.iter_mut().zip(velocity).zip(&self.inverse_mass) {
+            let rate = zero.if_below(inverse_mass, damping.rate, zero);
+            for axis in 0..D {
+                row[axis] -= rate * v[axis];
+            }
+        }
+    }
+
+    /// What springs and gravity accelerate every particle with at `time`: springs f = k(L − l) − D·dl/dt along the line of their ends, rest lengths driven to that
+    /// time, and gravity. A spring of no length has no direction and pulls nowhere.
+    #[inline(always)]
+    pub fn forces(&mut self, time: f64, position: &[[R; D]], velocity: &[[R; D]], acceleration: &mut [[R; D]]) {
+        let zero = R::splat(0.0);
+        self.evaluations += R::splat(1.0);
+        self.drive_muscles(time);
         for row in acceleration.iter_mut() {
             *row = [zero; D];
         }

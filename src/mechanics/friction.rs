@@ -3,13 +3,14 @@
 //! `ratchet`: s = S·v; if s < 0, v −= s S (Miller 1988). `drag` and `grip` are rates at which forward and sideways sliding die away.
 //! A method either lets them act once at the end of its step ([`Model::apply_friction`]), as the documents do, or
 //! asks in each of its stages what friction admits ([`Model::admit_velocity`], [`Model::admit_acceleration`]): there, a mass that
-//! does not slide forward and is pushed back stays where it is.
+//! does not slide forward and is pushed back stays where it is. [`StickRule`] says which.
 
 use crate::body::Ground;
 
 use super::{
     Model, Real,
     forces::direction,
+    integrators::StickRule,
     model::{FrictionRow, SpineRow},
 };
 
@@ -69,20 +70,29 @@ impl<R: Real, const D: usize> Model<R, D> {
         }
     }
 
-    /// Takes from all velocities what friction does not admit: sliding back along the spine.
+    /// Lets friction act on the velocities with which a step ends: what the stages admit, or all of it where it acts only now.
+    #[inline(always)]
+    pub fn finish_velocity(&self, position: &[[R; D]], velocity: &mut [[R; D]]) {
+        match self.stick {
+            StickRule::InStages => self.admit_velocity(position, velocity),
+            StickRule::EndOfStep => self.apply_friction(position, velocity),
+        }
+    }
+
+    /// Takes from all velocities what friction does not admit: sliding back along the spine. Nothing where friction acts at the end of a step.
     #[inline(always)]
     pub fn admit_velocity(&self, position: &[[R; D]], velocity: &mut [[R; D]]) {
-        let Some(friction) = self.friction else { return };
+        let (Some(friction), StickRule::InStages) = (self.friction, self.stick) else { return };
         for &row in &self.spine {
             ratchet(&friction, &self.frame(row, position), &mut velocity[row.particle as usize]);
         }
     }
 
     /// Adds drag and grip to all accelerations, and takes from them what friction does not admit: that a mass which does not slide forward starts
-    /// to slide back. `velocity` is admitted already.
+    /// to slide back. `velocity` is admitted already. Nothing where friction acts at the end of a step.
     #[inline(always)]
     pub fn admit_acceleration(&self, position: &[[R; D]], velocity: &[[R; D]], acceleration: &mut [[R; D]]) {
-        let Some(friction) = self.friction else { return };
+        let (Some(friction), StickRule::InStages) = (self.friction, self.stick) else { return };
         let zero = R::splat(0.0);
         for &row in &self.spine {
             let frame = self.frame(row, position);

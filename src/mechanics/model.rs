@@ -1,8 +1,13 @@
 //! A body, or several of equal topology side by side, in the layout that steps work on.
 
-use crate::body::{Epoch, Gravity, Ground, Muscle, Muscles, Particles, SpineFriction, Spring, Springs, Wave};
+use crate::body::{
+    Epoch, Gravity, Ground, MassDamping, Muscle, Muscles, Particles, SpineFriction, Spring, Springs, Wave,
+};
 
-use super::{Real, integrators::Method};
+use super::{
+    Real,
+    integrators::{Method, StickRule},
+};
 
 /// Components of one body, borrowed.
 #[derive(Clone, Copy, Debug)]
@@ -19,8 +24,12 @@ pub struct BodyParts<'a> {
     pub gravity: Option<Gravity>,
     /// The ground that it stands on, if any.
     pub ground: Option<Ground>,
+    /// Its damping by what surrounds it, if any.
+    pub mass_damping: Option<MassDamping>,
     /// The method that steps it.
     pub method: Method,
+    /// When friction acts in a step of the method.
+    pub stick: StickRule,
 }
 
 impl BodyParts<'_> {
@@ -42,13 +51,14 @@ impl BodyParts<'_> {
         fn rule(friction: Option<&SpineFriction>) -> Option<(bool, &[crate::body::ParticleId])> {
             friction.map(|friction| (friction.ratchet(), friction.spine()))
         }
-        self.method == other.method
+        (self.method, self.stick) == (other.method, other.stick)
             && self.particles.len() == other.particles.len()
             && self.springs.ends() == other.springs.ends()
             && driven(self.muscles).eq(driven(other.muscles))
             && rule(self.friction) == rule(other.friction)
             && self.ground == other.ground
             && self.gravity.is_some() == other.gravity.is_some()
+            && self.mass_damping.is_some() == other.mass_damping.is_some()
     }
 }
 
@@ -145,6 +155,15 @@ pub(super) struct FrictionRow<R> {
     pub(super) grip_loss: R,
 }
 
+/// Damping in proportion to mass.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct DampingRow<R> {
+    /// The rate c.
+    pub(super) rate: R,
+    /// λ = 1 − e^(−c dt): what it takes of a velocity in a step.
+    pub(super) loss: R,
+}
+
 /// Everything about a body that a step reads and does not change, for as many bodies as [`Real::LANES`], in `D` dimensions (1 for bodies
 /// [on an axis](BodyParts::on_axis), else 3).
 #[derive(Clone, Debug)]
@@ -158,10 +177,16 @@ pub struct Model<R, const D: usize> {
     pub(super) friction: Option<FrictionRow<R>>,
     pub(super) gravity: Option<R>,
     pub(super) ground: Option<Ground>,
+    pub(super) damping: Option<DampingRow<R>>,
+    pub(super) stick: StickRule,
     /// Rest lengths at the time of the last evaluation: scratch of the force loop.
     pub(super) rest: Vec<R>,
     /// 1 in the lanes where an evaluation met a spring longer than its longest, or of no finite length; else 0.
     pub(super) overstretched: R,
+    /// How often the forces of the whole body were evaluated since the model was made.
+    pub(super) evaluations: R,
+    /// 1 in the lanes of bodies for which the method could not take a step; else 0.
+    pub(super) refused: R,
 }
 
 /// What has exploded.
@@ -223,8 +248,12 @@ impl<R: Real, const D: usize> Model<R, D> {
             }),
             gravity: body.gravity.map(|_| zero),
             ground: body.ground,
+            damping: body.mass_damping.map(|_| DampingRow { rate: zero, loss: zero }),
+            stick: body.stick,
             rest: vec![zero; body.springs.len()],
             overstretched: zero,
+            evaluations: zero,
+            refused: zero,
         }
     }
 
@@ -256,11 +285,26 @@ impl<R: Real, const D: usize> Model<R, D> {
         if let (Some(row), Some(gravity)) = (&mut self.gravity, body.gravity) {
             row.set_lane(lane, gravity.acceleration());
         }
+        if let (Some(row), Some(damping)) = (&mut self.damping, body.mass_damping) {
+            let rate = damping.rate_at(self.dt);
+            row.rate.set_lane(lane, rate);
+            row.loss.set_lane(lane, -libm::expm1(-rate * self.dt));
+        }
     }
 
     /// Whether any evaluation since the model was made met, in this lane, a spring longer than ten rest lengths or of no finite length.
     pub fn has_exploded(&self, lane: usize) -> bool {
         self.overstretched.lane(lane) != 0.0
+    }
+
+    /// Whether the method could not take a step with the body in this lane, and left it where it was.
+    pub fn has_refused(&self, lane: usize) -> bool {
+        self.refused.lane(lane) != 0.0
+    }
+
+    /// How often the forces of the body in this lane were evaluated since the model was made.
+    pub fn evaluations(&self, lane: usize) -> u64 {
+        self.evaluations.lane(lane) as u64
     }
 
     /// What has exploded first in a lane of `state`: a particle that is not finite, or a spring that is longer than ten rest lengths.

@@ -10,7 +10,7 @@
 
 use bevy::math::DVec3;
 
-use crate::body::{ParticleId, Particles, SpringId};
+use crate::body::{MassDamping, ParticleId, Particles, SpringId};
 
 use super::{BodyParts, rest_length};
 
@@ -39,6 +39,12 @@ pub struct StabilityBound {
     pub rates: Vec<Rates>,
     /// How damping goes with stiffness.
     pub damping: Damping,
+    /// β: no mode is damped less by the springs than γ = βκ; the least D/k of all springs.
+    pub least_ratio: f64,
+    /// The rate c of damping in proportion to mass; 0 where it is given for a step.
+    pub mass_damping: f64,
+    /// The damping in proportion to mass that is given as a part of the velocity in each step.
+    pub loss_per_step: Option<f64>,
     /// The largest rate of drag or grip, which methods with friction in their stages integrate as a force.
     pub friction: f64,
 }
@@ -50,7 +56,35 @@ pub fn stability_bound(body: &BodyParts<'_>, stretched: bool) -> StabilityBound 
     StabilityBound {
         rates,
         damping: damping_law(body),
+        least_ratio: least_ratio(body),
+        mass_damping: match body.mass_damping {
+            Some(MassDamping::Rate(rate)) => rate,
+            _ => 0.0,
+        },
+        loss_per_step: match body.mass_damping {
+            Some(MassDamping::PerStep(loss)) => Some(loss),
+            _ => None,
+        },
         friction: body.friction.map_or(0.0, |friction| friction.drag().max(friction.grip())),
+    }
+}
+
+impl StabilityBound {
+    /// The least of a method's `limit(κ, γ)` for one oscillation x'' = −κx − γx' over all modes within the bounds, for methods whose limit first
+    /// grows with γ and then falls, and falls with κ where γ goes with it.
+    pub(super) fn least(&self, limit: impl Fn(f64, f64) -> f64) -> f64 {
+        let stiffness = self.rates.iter().map(|rates| rates.stiffness).fold(0.0, f64::max);
+        let most = self.rates.iter().map(|rates| rates.damping).fold(0.0, f64::max) + self.mass_damping + self.friction;
+        let least = self.least_ratio * stiffness + self.mass_damping;
+        if stiffness == 0.0 {
+            return if most > 0.0 { 2.0 / most } else { f64::INFINITY };
+        }
+        // Damping that does not go with stiffness also meets modes that have hardly any of that.
+        let alone = match self.damping {
+            Damping::Proportional if self.mass_damping + self.friction == 0.0 => f64::INFINITY,
+            _ => 2.0 / most,
+        };
+        limit(stiffness, least).min(limit(stiffness, most)).min(alone)
     }
 }
 
@@ -121,6 +155,12 @@ fn node_rates(body: &BodyParts<'_>) -> Vec<Rates> {
         }
     }
     rates
+}
+
+fn least_ratio(body: &BodyParts<'_>) -> f64 {
+    let springs = body.springs.iter().filter(|spring| spring.stiffness > 0.0);
+    let least = springs.map(|spring| spring.damping / spring.stiffness).fold(f64::INFINITY, f64::min);
+    if least.is_finite() { least } else { 0.0 }
 }
 
 fn damping_law(body: &BodyParts<'_>) -> Damping {

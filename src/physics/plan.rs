@@ -10,8 +10,12 @@ use bevy::{
 };
 
 use crate::{
-    body::{Gravity, Ground, Muscles, Particles, SpineFriction, Springs},
-    mechanics::{BodyParts, integrators::Method, is_stretched},
+    body::{Gravity, Ground, MassDamping, Muscles, Particles, SpineFriction, Springs},
+    mechanics::{
+        BodyParts,
+        integrators::{Method, StickRule},
+        is_stretched,
+    },
 };
 
 use super::{Clock, Frozen};
@@ -24,7 +28,9 @@ pub(super) struct Parts {
     friction: Option<&'static SpineFriction>,
     gravity: Option<&'static Gravity>,
     ground: Option<&'static Ground>,
+    mass_damping: Option<&'static MassDamping>,
     method: &'static Method,
+    stick: &'static StickRule,
 }
 
 impl PartsItem<'_, '_> {
@@ -38,7 +44,9 @@ impl PartsItem<'_, '_> {
             // Gravity of zero is none: it must not cost a body its axis.
             gravity: self.gravity.copied().filter(|gravity| gravity.acceleration() > 0.0),
             ground: self.ground.copied(),
+            mass_damping: self.mass_damping.copied(),
             method: *self.method,
+            stick: *self.stick,
         }
     }
 }
@@ -79,7 +87,9 @@ type Changes = Or<(
     Changed<Muscles>,
     Changed<Gravity>,
     Changed<Ground>,
+    Changed<MassDamping>,
     Changed<Method>,
+    Changed<StickRule>,
 )>;
 
 /// Plans every body that was changed.
@@ -127,14 +137,14 @@ pub(super) fn watch_limit(
 
 fn topology(body: &BodyParts<'_>) -> u64 {
     let mut hasher = DefaultHasher::new();
-    (body.method, body.particles.len(), body.springs.ends()).hash(&mut hasher);
+    (body.method, body.stick, body.particles.len(), body.springs.ends()).hash(&mut hasher);
     for muscle in body.muscles.into_iter().flat_map(Muscles::iter) {
         (muscle.spring, muscle.wave).hash(&mut hasher);
     }
     if let Some(friction) = body.friction {
         (friction.ratchet(), friction.spine()).hash(&mut hasher);
     }
-    (body.ground.is_some(), body.gravity.is_some()).hash(&mut hasher);
+    (body.ground.is_some(), body.gravity.is_some(), body.mass_damping.is_some()).hash(&mut hasher);
     hasher.finish()
 }
 

@@ -41,8 +41,8 @@ struct Item<'a> {
     plan: &'a Plan,
     verdict: Mut<'a, Verdict>,
     on_axis: bool,
-    /// How many steps it took: fewer than the tick's if it exploded.
-    taken: u64,
+    /// How often its forces were evaluated in this tick, up to the step in which it exploded if it did.
+    evaluations: u64,
 }
 
 impl Item<'_> {
@@ -81,7 +81,7 @@ pub(super) fn step(
             }
             let body = parts.body(&particles);
             let on_axis = body.on_axis();
-            Some(Item { particles, parts, plan, verdict, on_axis, taken: steps })
+            Some(Item { particles, parts, plan, verdict, on_axis, evaluations: 0 })
         })
         .collect();
     items.sort_by_key(|item| (item.plan.topology, item.on_axis));
@@ -105,10 +105,8 @@ pub(super) fn step(
         }
     }
     for item in &items {
-        let body = item.body();
-        let evaluations = item.taken * body.method.evaluations();
-        cost.force_evaluations += evaluations;
-        cost.spring_updates += evaluations * body.springs.len() as u64;
+        cost.force_evaluations += item.evaluations;
+        cost.spring_updates += item.evaluations * item.body().springs.len() as u64;
     }
     clock.advance(steps);
     cost.seconds = start.elapsed().as_secs_f64();
@@ -136,9 +134,10 @@ fn step_lanes<R: Real, const D: usize>(group: &mut [Item<'_>], timeline: Timelin
     let steps_to_take = steps.end - steps.start;
     Advance { model: &mut model, state: &mut state, method, timeline, first: steps.start, steps: steps_to_take }.run();
     for (lane, item) in group.iter_mut().enumerate() {
-        if model.has_exploded(lane) || model.explosion(&state, lane).is_some() {
+        if model.has_exploded(lane) || model.has_refused(lane) || model.explosion(&state, lane).is_some() {
             retrace::<D>(item, timeline, steps.clone());
         } else {
+            item.evaluations = model.evaluations(lane);
             state.write_lane(lane, item.particles.bypass_change_detection());
         }
     }
@@ -152,17 +151,22 @@ fn retrace<const D: usize>(item: &mut Item<'_>, timeline: Timeline, steps: Range
     let mut model = Model::<f64, D>::new(&body, [], timeline.dt);
     let mut state = State::new(body.particles.len());
     state.set_lane(0, body.particles);
-    let first = steps.start;
     for step in steps {
         let good = state.clone();
         Advance { model: &mut model, state: &mut state, method, timeline, first: step, steps: 1 }.run();
-        let Some(explosion) = model.explosion(&state, 0) else { continue };
-        let particle = ParticleId(explosion.particle as u32);
-        let reason = match explosion.spring {
-            Some(spring) => format!("spring {spring} is longer than ten rest lengths"),
-            None => "it is not finite".into(),
+        item.evaluations = model.evaluations(0);
+        let (particle, reason) = if model.has_refused(0) {
+            (0, format!("{} did not converge", method.name()))
+        } else if let Some(explosion) = model.explosion(&state, 0) {
+            let reason = match explosion.spring {
+                Some(spring) => format!("spring {spring} is longer than ten rest lengths"),
+                None => "it is not finite".into(),
+            };
+            (explosion.particle, reason)
+        } else {
+            continue;
         };
-        item.taken = step + 1 - first;
+        let particle = ParticleId(particle as u32);
         good.write_lane(0, item.particles.bypass_change_detection());
         *item.verdict = Verdict(Some(Failure { step: step + 1, time: timeline.time_at(step + 1), particle, reason }));
         return;

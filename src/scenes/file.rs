@@ -7,7 +7,7 @@ use serde::{Deserialize, Deserializer, Serialize, de};
 use crate::{
     body::Ground,
     creatures::{CurrentVersion, numbers, version},
-    mechanics::integrators::Method,
+    mechanics::integrators::{Method, StickRule},
     physics::Clock,
 };
 
@@ -43,6 +43,9 @@ pub struct SceneFile {
     /// The method of integration. Left out: semi-implicit Euler.
     #[serde(default)]
     pub method: Method,
+    /// When friction acts in a step of the method. Left out: in its stages.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub stick: StickRule,
     /// How much error it can afford. Left out: one pixel.
     #[serde(default)]
     pub budget: Budget,
@@ -61,6 +64,10 @@ pub(crate) struct OnlyVersion {
 
 impl CurrentVersion for SceneFile {
     type OnlyVersion = OnlyVersion;
+}
+
+fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
 }
 
 /// A creature in a scene.

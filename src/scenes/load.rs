@@ -16,7 +16,7 @@ use crate::{
         library::{self, CREATURE, SCENE, Source},
         parse,
     },
-    mechanics::integrators::Method,
+    mechanics::integrators::{Method, StickRule},
 };
 
 /// A scene with its creatures, read and found to be good.
@@ -114,6 +114,7 @@ pub fn load_creature(name: &str) -> Result<LoadedScene, FileError> {
         camera: Camera::default(),
         clock: SceneClock::default(),
         method: Method::default(),
+        stick: StickRule::default(),
         budget: super::Budget::default(),
         set: Default::default(),
     };

@@ -82,7 +82,7 @@ fn spawn(world: &mut World, scene: &LoadedScene, bodies: Vec<crate::creatures::B
     let gravity = Gravity::new(file.gravity).ok().filter(|gravity| gravity.acceleration() > 0.0);
     let mut entities = Vec::with_capacity(bodies.len());
     for (placement, body) in file.creatures.iter().zip(bodies) {
-        let mut entity = world.spawn((Name::new(placement.name.clone()), SceneMember, file.method));
+        let mut entity = world.spawn((Name::new(placement.name.clone()), SceneMember, file.method, file.stick));
         if let Some(gravity) = gravity {
             entity.insert(gravity);
         }

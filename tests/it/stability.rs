@@ -3,11 +3,18 @@
 use bevy::math::DVec3;
 use wriggle::{
     body::{Gravity, Particle, ParticleId, Particles, Spring, Springs},
-    mechanics::{BodyParts, integrators::Method, is_stretched},
+    mechanics::{
+        BodyParts,
+        integrators::{Method, StickRule},
+        is_stretched,
+    },
     physics::Plan,
 };
 
 use crate::support::{Worm, stepping_app};
+
+/// The methods whose step [`true_limit`] knows as a matrix.
+const STEP_KNOWN: [Method; 2] = [Method::SemiImplicitEuler, Method::RungeKutta4];
 
 /// The largest stable dt of an oscillator of squared frequency κ and damping rate γ, by the growth of its step's matrix.
 fn true_limit(method: Method, modes: &[(f64, f64)]) -> f64 {
@@ -32,6 +39,7 @@ fn true_limit(method: Method, modes: &[(f64, f64)]) -> f64 {
                     }
                     (sum[0][0] + sum[1][1], sum[0][0] * sum[1][1] - sum[0][1] * sum[1][0])
                 }
+                other => panic!("the step of {other:?} is not known here"),
             };
             let discriminant: f64 = trace * trace / 4.0 - determinant;
             let radius =
@@ -54,7 +62,7 @@ fn assert_bounds(predicted: f64, truth: f64, what: &str) {
 
 #[test]
 fn the_worm_limit_is_safe_and_no_less_than_half_at_rest_and_stretched() {
-    for method in Method::ALL {
+    for method in STEP_KNOWN {
         for damping in [0.0, 0.1, 0.9, 3.0, 12.0] {
             for gap in [0.6, 1.0, 1.4, 3.0] {
                 let mut body = Worm { damping, drag: 0.0, method, ..Worm::GARDEN }.body();
@@ -108,7 +116,9 @@ fn the_bound_is_the_true_limit_of_a_long_chain_and_safe_for_unequal_masses() {
             friction: None,
             gravity: None,
             ground: None,
+            mass_damping: None,
             method: Method::SemiImplicitEuler,
+            stick: StickRule::InStages,
         };
         parts.stability_limit(false)
     };
@@ -124,7 +134,7 @@ fn the_bound_is_the_true_limit_of_a_long_chain_and_safe_for_unequal_masses() {
 
 #[test]
 fn a_small_disturbance_dies_below_the_true_limit_and_grows_above_it() {
-    for method in Method::ALL {
+    for method in STEP_KNOWN {
         for damping in [0.05, 0.9, 3.0] {
             for (factor, grows) in [(0.99, false), (1.01, true)] {
                 let worm = Worm { amplitude: 0.0, damping, drag: 0.0, ratchet: false, method, ..Worm::GARDEN };

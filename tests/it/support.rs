@@ -3,7 +3,10 @@
 use bevy::{math::DVec3, prelude::*, time::TimeUpdateStrategy};
 use wriggle::{
     body::{Muscle, Muscles, Particle, ParticleId, Particles, SpineFriction, Spring, SpringId, Springs, Wave},
-    mechanics::{BodyParts, integrators::Method},
+    mechanics::{
+        BodyParts,
+        integrators::{Method, StickRule},
+    },
     physics::{Clock, PhysicsPlugin},
 };
 
@@ -84,7 +87,9 @@ impl Body {
             friction: Some(&self.friction),
             gravity: None,
             ground: None,
+            mass_damping: None,
             method: self.method,
+            stick: StickRule::InStages,
         }
     }
 

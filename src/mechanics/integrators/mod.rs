@@ -1,15 +1,27 @@
-//! Methods of integration, one file each and all of one shape: a struct with its scratch, and [`Integrator::step`].
+//! Methods of integration, one file each and all of one shape: what is to be known about it, a struct with its scratch,
+//! [`Integrator::step`], and its stability limit.
 
+mod damped_verlet;
+mod explicit_euler;
+mod runge_kutta_2;
 mod runge_kutta_4;
 mod semi_implicit_euler;
+mod stages;
+mod stormer_verlet;
+mod xpbd;
 
 use bevy::{ecs::prelude::*, prelude::ReflectComponent, reflect::Reflect};
 use serde::{Deserialize, Serialize};
 
 use super::{Model, Real, State, stability::StabilityBound};
 
+pub use damped_verlet::DampedVerlet;
+pub use explicit_euler::ExplicitEuler;
+pub use runge_kutta_2::RungeKutta2;
 pub use runge_kutta_4::RungeKutta4;
 pub use semi_implicit_euler::SemiImplicitEuler;
+pub use stormer_verlet::StormerVerlet;
+pub use xpbd::Xpbd;
 
 /// A method of integration at work on bodies with `D` coordinates a particle: it holds the scratch that a step needs.
 pub trait Integrator<R: Real, const D: usize> {
@@ -21,49 +33,96 @@ pub trait Integrator<R: Real, const D: usize> {
 }
 
 /// Which method steps a body.
-#[derive(Clone, Component, Copy, Debug, Default, PartialEq, Eq, Hash, Reflect, Serialize, Deserialize)]
+#[derive(
+    Clone, Component, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Reflect, Serialize, Deserialize,
+)]
 #[reflect(Component)]
+#[require(StickRule)]
 pub enum Method {
+    /// [`ExplicitEuler`]: for its failure.
+    ExplicitEuler,
     /// [`SemiImplicitEuler`]: the documents' own.
     #[default]
     SemiImplicitEuler,
+    /// [`StormerVerlet`].
+    StormerVerlet,
+    /// [`DampedVerlet`].
+    DampedVerlet,
+    /// [`RungeKutta2`], with the friction rule inside its stages.
+    RungeKutta2,
     /// [`RungeKutta4`], with the friction rule inside its stages.
     RungeKutta4,
+    /// [`Xpbd`].
+    Xpbd,
+}
+
+/// When friction acts within a step. Methods in stages ask in every stage unless told otherwise; semi-implicit Euler and XPBD let it act at the end
+/// of the step in any case.
+#[derive(
+    Clone, Component, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Reflect, Serialize, Deserialize,
+)]
+#[reflect(Component)]
+pub enum StickRule {
+    /// Each stage admits only velocities and accelerations that friction admits.
+    #[default]
+    InStages,
+    /// Stages know no friction; velocities are projected once at the end of the step, as the documents do it. Every method is of order 1 then.
+    EndOfStep,
+}
+
+/// What is to be known about a method.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct About {
+    /// Its name, as files and command lines write it.
+    pub name: &'static str,
+    /// What it is, in one line.
+    pub summary: &'static str,
+    /// Its order on smooth problems.
+    pub order: u32,
+    /// How many times a step evaluates the forces; `None` where that depends on the step.
+    pub evaluations: Option<u64>,
 }
 
 impl Method {
     /// Every method.
-    pub const ALL: [Self; 2] = [Self::SemiImplicitEuler, Self::RungeKutta4];
+    pub const ALL: [Self; 7] = [
+        Self::ExplicitEuler,
+        Self::SemiImplicitEuler,
+        Self::StormerVerlet,
+        Self::DampedVerlet,
+        Self::RungeKutta2,
+        Self::RungeKutta4,
+        Self::Xpbd,
+    ];
+
+    /// What is to be known about it.
+    pub fn about(self) -> About {
+        match self {
+            Self::ExplicitEuler => explicit_euler::ABOUT,
+            Self::SemiImplicitEuler => semi_implicit_euler::ABOUT,
+            Self::StormerVerlet => stormer_verlet::ABOUT,
+            Self::DampedVerlet => damped_verlet::ABOUT,
+            Self::RungeKutta2 => runge_kutta_2::ABOUT,
+            Self::RungeKutta4 => runge_kutta_4::ABOUT,
+            Self::Xpbd => xpbd::ABOUT,
+        }
+    }
 
     /// Its name, as files and command lines write it.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::SemiImplicitEuler => "SemiImplicitEuler",
-            Self::RungeKutta4 => "RungeKutta4",
-        }
+        self.about().name
     }
 
-    /// What it is, in one line.
-    pub fn summary(self) -> &'static str {
-        match self {
-            Self::SemiImplicitEuler => "order 1, one force evaluation a step; friction acts at the end of the step",
-            Self::RungeKutta4 => "order 4, four force evaluations a step; friction acts inside the stages",
-        }
-    }
-
-    /// How many times a step evaluates the forces.
-    pub fn evaluations(self) -> u64 {
-        match self {
-            Self::SemiImplicitEuler => 1,
-            Self::RungeKutta4 => 4,
-        }
-    }
-
-    /// The largest dt that is stable for every body within `bound`.
+    /// The largest dt that is stable for every body within `bound`; infinite for methods that no step makes unstable.
     pub fn stability_limit(self, bound: &StabilityBound) -> f64 {
         match self {
+            Self::ExplicitEuler => explicit_euler::stability_limit(bound),
             Self::SemiImplicitEuler => semi_implicit_euler::stability_limit(bound),
+            Self::StormerVerlet => stormer_verlet::stability_limit(bound),
+            Self::DampedVerlet => damped_verlet::stability_limit(bound),
+            Self::RungeKutta2 => runge_kutta_2::stability_limit(bound),
             Self::RungeKutta4 => runge_kutta_4::stability_limit(bound),
+            Self::Xpbd => f64::INFINITY,
         }
     }
 }

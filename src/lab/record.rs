@@ -1,0 +1,71 @@
+//! What work-precision runs have measured, as it is kept, drawn and written.
+
+use serde::{Deserialize, Serialize};
+
+use crate::mechanics::integrators::{Method, StickRule};
+
+/// A method with its step: what a scene chooses.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Setting {
+    /// The method.
+    pub method: Method,
+    /// When friction acts in its steps.
+    pub stick: StickRule,
+    /// The step.
+    pub dt: f64,
+}
+
+/// How far a run was from the reference: largest over all bodies and all shared times.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Errors {
+    /// Of the position of any particle (lengths).
+    pub largest: f64,
+    /// Root mean square over particles and shared times (lengths).
+    pub rms: f64,
+    /// Of the way of the centre of mass at the end (lengths).
+    pub distance: f64,
+}
+
+/// One run of a scene's problem.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Point {
+    /// With what.
+    pub setting: Setting,
+    /// Steps taken.
+    pub steps: u64,
+    /// Evaluations of the forces of all bodies.
+    pub evaluations: u64,
+    /// The shortest of the timed runs, in seconds.
+    pub seconds: f64,
+    /// The median of the timed runs, in seconds.
+    pub median_seconds: f64,
+    /// Its errors; `None` where it blew up.
+    pub errors: Option<Errors>,
+}
+
+/// The work-precision chart of one scene as numbers.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct WorkPrecision {
+    /// The scene's name.
+    pub scene: String,
+    /// Its title.
+    pub title: String,
+    /// The simulated time of a run.
+    pub duration: f64,
+    /// The seconds in which the app shows that time: duration / time scale.
+    pub real_time: f64,
+    /// All runs, method by method and from the largest step down.
+    pub points: Vec<Point>,
+    /// The stability limit of each method's step; infinite where none makes it unstable.
+    pub limits: Vec<(Method, f64)>,
+    /// The scene's own setting.
+    pub setting: Setting,
+    /// The error that the scene can afford (lengths).
+    pub budget: f64,
+    /// What the reference is and what confirms it, in words.
+    pub reference: String,
+    /// How far the reference is from what confirms it (lengths).
+    pub reference_error: f64,
+    /// Processor and commit, in words.
+    pub machine: String,
+}
