@@ -3,8 +3,8 @@
 use super::{
     Model, Real, State,
     integrators::{
-        DampedVerlet, ExplicitEuler, Integrator, Method, RungeKutta2, RungeKutta4, SemiImplicitEuler, StormerVerlet,
-        Xpbd,
+        DampedVerlet, ExactFlow, ExplicitEuler, ImplicitEuler, ImplicitMidpoint, Integrator, LaneByLane, Leapfrog,
+        Method, RungeKutta2, RungeKutta4, SemiImplicitEuler, StormerVerlet, Xpbd,
     },
 };
 
@@ -70,6 +70,10 @@ impl<R: Real, const D: usize> pulp::NullaryFnOnce for Advance<'_, R, D> {
             Method::StormerVerlet => self.run_with::<StormerVerlet<R, D>>(),
             Method::DampedVerlet => self.run_with::<DampedVerlet<R, D>>(),
             Method::RungeKutta2 => self.run_with::<RungeKutta2<R, D>>(),
+            Method::Leapfrog => self.run_with::<LaneByLane<Leapfrog<D>, R, D>>(),
+            Method::ImplicitMidpoint => self.run_with::<LaneByLane<ImplicitMidpoint<D>, R, D>>(),
+            Method::ImplicitEuler => self.run_with::<LaneByLane<ImplicitEuler<D>, R, D>>(),
+            Method::ExactFlow => self.run_with::<LaneByLane<ExactFlow, R, D>>(),
             Method::Xpbd => self.run_with::<Xpbd<R, D>>(),
             Method::RungeKutta4 => self.run_with::<RungeKutta4<R, D>>(),
         }

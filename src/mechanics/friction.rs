@@ -18,20 +18,21 @@ use super::{
 const AT_ONCE: f64 = 1e-9;
 
 /// Directions in which friction acts on one mass.
-struct Frame<R, const D: usize> {
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Frame<R, const D: usize> {
     /// Forward along the spine, S.
-    spine: [R; D],
+    pub(super) spine: [R; D],
     /// Forward along the surface, S_t; without a ground, S itself.
-    forward: [R; D],
+    pub(super) forward: [R; D],
     /// Sideways, q = n × S_t with the surface's normal n; without a ground, n points up.
-    side: [R; D],
+    pub(super) side: [R; D],
     /// 1 where the mass touches the ground or there is none, else 0.
-    touches: R,
+    pub(super) touches: R,
 }
 
 impl<R: Real, const D: usize> Model<R, D> {
     #[inline(always)]
-    fn frame(&self, row: SpineRow, position: &[[R; D]]) -> Frame<R, D> {
+    pub(super) fn frame(&self, row: SpineRow, position: &[[R; D]]) -> Frame<R, D> {
         let (zero, one) = (R::splat(0.0), R::splat(1.0));
         let spine = direction(position[row.previous as usize], position[row.next as usize]).1;
         let mut frame = Frame { spine, forward: spine, side: [zero; D], touches: one };

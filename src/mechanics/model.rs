@@ -6,6 +6,7 @@ use crate::body::{
 
 use super::{
     Real,
+    forces::direction,
     integrators::{Method, StickRule},
 };
 
@@ -289,6 +290,63 @@ impl<R: Real, const D: usize> Model<R, D> {
             let rate = damping.rate_at(self.dt);
             row.rate.set_lane(lane, rate);
             row.loss.set_lane(lane, -libm::expm1(-rate * self.dt));
+        }
+    }
+
+    /// Notes springs that are too long, or of no finite length.
+    pub(super) fn note_lengths(&mut self, state: &State<R, D>) {
+        for spring in &self.springs {
+            let [a, b] = spring.ends.map(|end| state.position[end as usize]);
+            self.overstretched = direction(a, b).0.if_below(spring.longest, self.overstretched, R::splat(1.0));
+        }
+    }
+
+    /// The body in one lane, alone.
+    pub(super) fn lane(&self, lane: usize) -> Model<f64, D> {
+        let of = |value: &R| value.lane(lane);
+        Model {
+            dt: self.dt,
+            inverse_mass: self.inverse_mass.iter().map(of).collect(),
+            springs: (self.springs.iter())
+                .map(|row| SpringRow {
+                    ends: row.ends,
+                    stiffness: of(&row.stiffness),
+                    damping: of(&row.damping),
+                    rest_length: of(&row.rest_length),
+                    longest: of(&row.longest),
+                })
+                .collect(),
+            muscles: (self.muscles.iter())
+                .map(|row| MuscleRow {
+                    spring: row.spring,
+                    wave: row.wave,
+                    amplitude: of(&row.amplitude),
+                    frequency: of(&row.frequency),
+                    phase: of(&row.phase),
+                    ramp: of(&row.ramp),
+                    ramp_rate: of(&row.ramp_rate),
+                    epoch_time: of(&row.epoch_time),
+                    epoch_cycles: of(&row.epoch_cycles),
+                })
+                .collect(),
+            spine: self.spine.clone(),
+            friction: self.friction.as_ref().map(|row| FrictionRow {
+                ratchet: row.ratchet,
+                has_drag: row.has_drag,
+                has_grip: row.has_grip,
+                drag: of(&row.drag),
+                grip: of(&row.grip),
+                drag_loss: of(&row.drag_loss),
+                grip_loss: of(&row.grip_loss),
+            }),
+            gravity: self.gravity.as_ref().map(of),
+            ground: self.ground,
+            damping: self.damping.as_ref().map(|row| DampingRow { rate: of(&row.rate), loss: of(&row.loss) }),
+            stick: self.stick,
+            rest: self.rest.iter().map(of).collect(),
+            overstretched: of(&self.overstretched),
+            evaluations: of(&self.evaluations),
+            refused: of(&self.refused),
         }
     }
 

@@ -162,5 +162,10 @@ fn misfit(body: &BodyParts<'_>) -> Option<String> {
     if body.muscles.is_some_and(|muscles| muscles.iter().any(|muscle| muscle.spring.index() >= body.springs.len())) {
         return Some(format!("its muscles were made for another body; this one has {} springs", body.springs.len()));
     }
+    if body.method == Method::ExactFlow && !body.on_axis() {
+        let problem =
+            "it is not on an axis along x: ExactFlow takes no gravity, no ground, and no mass beside the line";
+        return Some(problem.into());
+    }
     None
 }

@@ -85,7 +85,13 @@ pub(super) fn step(
         })
         .collect();
     items.sort_by_key(|item| (item.plan.topology, item.on_axis));
-    let mut groups: Vec<_> = items.chunk_by_mut(Item::matches).flat_map(|alike| alike.chunks_mut(LANES)).collect();
+    let mut groups: Vec<_> = items
+        .chunk_by_mut(Item::matches)
+        .flat_map(|alike| {
+            let width = side_by_side(alike);
+            alike.chunks_mut(width)
+        })
+        .collect();
     match &mut groups[..] {
         [] => {}
         [one] => step_group(one, timeline, range),
@@ -110,6 +116,11 @@ pub(super) fn step(
     }
     clock.advance(steps);
     cost.seconds = start.elapsed().as_secs_f64();
+}
+
+/// How many of these bodies are stepped side by side.
+fn side_by_side(alike: &[Item<'_>]) -> usize {
+    if alike.first().is_some_and(|first| first.body().method.side_by_side()) { LANES } else { 1 }
 }
 
 fn step_group(group: &mut [Item<'_>], timeline: Timeline, steps: Range<u64>) {

@@ -2,7 +2,13 @@
 //! [`Integrator::step`], and its stability limit.
 
 mod damped_verlet;
+mod exact_flow;
 mod explicit_euler;
+mod implicit;
+mod implicit_euler;
+mod implicit_midpoint;
+mod lane_by_lane;
+mod leapfrog;
 mod runge_kutta_2;
 mod runge_kutta_4;
 mod semi_implicit_euler;
@@ -16,7 +22,12 @@ use serde::{Deserialize, Serialize};
 use super::{Model, Real, State, stability::StabilityBound};
 
 pub use damped_verlet::DampedVerlet;
+pub use exact_flow::ExactFlow;
 pub use explicit_euler::ExplicitEuler;
+pub use implicit_euler::ImplicitEuler;
+pub use implicit_midpoint::ImplicitMidpoint;
+pub use lane_by_lane::LaneByLane;
+pub use leapfrog::Leapfrog;
 pub use runge_kutta_2::RungeKutta2;
 pub use runge_kutta_4::RungeKutta4;
 pub use semi_implicit_euler::SemiImplicitEuler;
@@ -48,12 +59,20 @@ pub enum Method {
     StormerVerlet,
     /// [`DampedVerlet`].
     DampedVerlet,
+    /// [`Leapfrog`], with damping in the middle of the step.
+    Leapfrog,
     /// [`RungeKutta2`], with the friction rule inside its stages.
     RungeKutta2,
     /// [`RungeKutta4`], with the friction rule inside its stages.
     RungeKutta4,
+    /// [`ImplicitMidpoint`].
+    ImplicitMidpoint,
+    /// [`ImplicitEuler`].
+    ImplicitEuler,
     /// [`Xpbd`].
     Xpbd,
+    /// [`ExactFlow`], for bodies on an axis.
+    ExactFlow,
 }
 
 /// When friction acts within a step. Methods in stages ask in every stage unless told otherwise; semi-implicit Euler and XPBD let it act at the end
@@ -85,14 +104,18 @@ pub struct About {
 
 impl Method {
     /// Every method.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 11] = [
         Self::ExplicitEuler,
         Self::SemiImplicitEuler,
         Self::StormerVerlet,
         Self::DampedVerlet,
+        Self::Leapfrog,
         Self::RungeKutta2,
         Self::RungeKutta4,
+        Self::ImplicitMidpoint,
+        Self::ImplicitEuler,
         Self::Xpbd,
+        Self::ExactFlow,
     ];
 
     /// What is to be known about it.
@@ -104,13 +127,22 @@ impl Method {
             Self::DampedVerlet => damped_verlet::ABOUT,
             Self::RungeKutta2 => runge_kutta_2::ABOUT,
             Self::RungeKutta4 => runge_kutta_4::ABOUT,
+            Self::Leapfrog => leapfrog::ABOUT,
+            Self::ImplicitMidpoint => implicit_midpoint::ABOUT,
+            Self::ImplicitEuler => implicit_euler::ABOUT,
             Self::Xpbd => xpbd::ABOUT,
+            Self::ExactFlow => exact_flow::ABOUT,
         }
     }
 
     /// Its name, as files and command lines write it.
     pub fn name(self) -> &'static str {
         self.about().name
+    }
+
+    /// Whether bodies of equal topology gain from being stepped side by side: whether every body takes the same operations.
+    pub fn side_by_side(self) -> bool {
+        !matches!(self, Self::Leapfrog | Self::ImplicitMidpoint | Self::ImplicitEuler | Self::ExactFlow)
     }
 
     /// The largest dt that is stable for every body within `bound`; infinite for methods that no step makes unstable.
@@ -122,7 +154,8 @@ impl Method {
             Self::DampedVerlet => damped_verlet::stability_limit(bound),
             Self::RungeKutta2 => runge_kutta_2::stability_limit(bound),
             Self::RungeKutta4 => runge_kutta_4::stability_limit(bound),
-            Self::Xpbd => f64::INFINITY,
+            Self::Leapfrog => leapfrog::stability_limit(bound),
+            Self::ImplicitMidpoint | Self::ImplicitEuler | Self::Xpbd | Self::ExactFlow => f64::INFINITY,
         }
     }
 }
