@@ -110,7 +110,7 @@ fn bad_input_exits_with_2_and_says_what_is_right() {
         (&["run", "garden", "--for", "1e300"], &["--for", "give a shorter time"]),
         (&["run", "garden", "--dt", "0"], &["--dt", "above 0"]),
         (&["run", "garden", "--dt", "fast"], &["--dt", "above 0"]),
-        (&["run", "garden", "--method", "Leapfrog"], &["Leapfrog", "SemiImplicitEuler", "RungeKutta4"]),
+        (&["run", "garden", "--method", "Newmark"], &["Newmark", "SemiImplicitEuler", "RungeKutta4"]),
         (&["run", "garden", "--set", "worm.springs.stiffness"], &["PATH=VALUE"]),
         (&["run", "garden", "--set", "worm.springs.stiffness=x"], &["`x` is no number"]),
         (&["run", "garden", "--set", "worm.springs.stiffness=-1"], &["worm.springs.stiffness: -1", "0 or more"]),

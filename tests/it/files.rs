@@ -194,7 +194,7 @@ fn bad_values_of_a_scene_are_reported_too() {
         ("time_scale: 3", "time_scale: 1e9", &[":4:", "time_scale: 1000000000 is not allowed", "from 0 to 1000"]),
         ("pitch: 25", "pitch: 100", &[":3:", "pitch", "100 is not allowed", "from -90 to 90"]),
         ("distance: 12", "distance: 0", &[":3:", "distance", "above 0"]),
-        ("SemiImplicitEuler", "Leapfrog", &[":4:", "method", "Leapfrog", "RungeKutta4"]),
+        ("SemiImplicitEuler", "Newmark", &[":4:", "method", "Newmark", "RungeKutta4"]),
         ("Pixels(1)", "Pixels(0)", &[":4:", "budget", "above 0"]),
         ("ground: None", "ground: Hilly", &[":1:", "ground", "Hilly", "Flat"]),
         ("title: \"Garden\", ", "", &["`title` is missing"]),

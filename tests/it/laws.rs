@@ -6,7 +6,7 @@ use wriggle::{
     mechanics::{Lanes, Real, angular_momentum, integrators::Method, kinetic_energy, momentum, sin_cycles},
 };
 
-use crate::support::{Worm, particles, stepping_app};
+use crate::support::{Worm, in_space, particles, stepping_app};
 
 /// A crumpled net of five masses with unequal springs, thrown spinning.
 fn net() -> (Particles, Springs) {
@@ -40,17 +40,25 @@ fn net() -> (Particles, Springs) {
 
 #[test]
 fn without_friction_momentum_stays() {
-    for method in Method::ALL {
+    for method in in_space() {
         let (start, springs) = net();
         let (p, l) = (momentum(&start), angular_momentum(&start));
         let mut app = stepping_app(0.01, 1000);
         let body = app.world_mut().spawn((start, springs, method)).id();
         app.update();
         let after = particles(&app, body);
-        assert!((momentum(after) - p).length() < 1e-12, "{method:?}");
+        // XPBD's velocities are differences of positions, with their rounding.
+        let bound = if method == Method::Xpbd { 1e-10 } else { 1e-12 };
+        assert!((momentum(after) - p).length() < bound, "{method:?}");
         let drift = (angular_momentum(after) - l).length() / l.length();
-        // Semi-implicit Euler keeps angular momentum as exactly as momentum; Runge–Kutta to its order.
-        let bound = if method == Method::SemiImplicitEuler { 1e-12 } else { 1e-6 };
+        // Forces along lines on which the masses are when they are kicked turn nothing, and the midpoint rule keeps what is quadratic; Runge–Kutta
+        // methods keep it to their order, and what is left does not keep it.
+        let bound = match method {
+            Method::RungeKutta4 => 1e-6,
+            Method::RungeKutta2 => 1e-3,
+            Method::ExplicitEuler | Method::ImplicitEuler | Method::Xpbd => continue,
+            _ => 1e-10,
+        };
         assert!(drift < bound, "angular momentum drifts by {drift}, {method:?}");
     }
 }
@@ -66,7 +74,7 @@ fn a_worm_without_friction_keeps_its_momentum() {
 
 #[test]
 fn what_is_pinned_stays() {
-    for method in Method::ALL {
+    for method in in_space() {
         let mut body = Worm { method, ..Worm::GARDEN }.body();
         let held = Particle { pinned: true, ..Particle::at(DVec3::X) };
         body.particles.set(ParticleId(1), held).unwrap();
@@ -122,7 +130,7 @@ fn a_lane_has_the_bits_of_one_number() {
 #[test]
 fn a_turned_and_shifted_worm_crawls_the_same_way() {
     // The worm on the axis is stepped in one dimension, the turned one in three.
-    for method in Method::ALL {
+    for method in in_space() {
         let mut app = stepping_app(0.01, 3000);
         let straight = app.world_mut().spawn(Worm { method, ..Worm::GARDEN }.body()).id();
         let (by, turn) = (DVec3::new(3.0, 1.0, -2.0), 0.9);
@@ -131,7 +139,7 @@ fn a_turned_and_shifted_worm_crawls_the_same_way() {
         let rotation = bevy::math::DQuat::from_rotation_y(turn);
         for (a, b) in particles(&app, straight).positions().zip(particles(&app, turned).positions()) {
             assert!(
-                (rotation * a + by - b).length() < 1e-11,
+                (rotation * a + by - b).length() < 1e-10,
                 "{a} and {b}, {method:?}, {:e}",
                 (rotation * a + by - b).length()
             );

@@ -10,6 +10,7 @@ mod files;
 mod friction;
 mod garden_worm;
 mod laws;
+mod methods;
 #[cfg(feature = "window")]
 mod panel;
 mod parameters;

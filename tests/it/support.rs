@@ -10,6 +10,11 @@ use wriggle::{
     physics::{Clock, PhysicsPlugin},
 };
 
+/// The methods that step bodies in three dimensions: all but the exact flow.
+pub fn in_space() -> impl Iterator<Item = Method> {
+    Method::ALL.into_iter().filter(|method| *method != Method::ExactFlow)
+}
+
 /// A worm of three masses on the x axis, as numbers.
 #[derive(Clone, Copy, Debug)]
 pub struct Worm {

@@ -16,7 +16,16 @@ fn messages(app: &mut App) -> Vec<BodyFrozen> {
 #[test]
 fn an_exploding_worm_is_frozen_and_its_neighbour_is_not() {
     const DT: f64 = 0.05;
-    for method in Method::ALL {
+    let explicit = [
+        Method::ExplicitEuler,
+        Method::SemiImplicitEuler,
+        Method::StormerVerlet,
+        Method::DampedVerlet,
+        Method::Leapfrog,
+        Method::RungeKutta2,
+        Method::RungeKutta4,
+    ];
+    for method in explicit {
         let alone = {
             let mut app = stepping_app(DT, 500);
             let calm = app.world_mut().spawn(Worm { method, ..Worm::GARDEN }.body()).id();

@@ -70,9 +70,10 @@ impl<const D: usize> Integrator<f64, D> for ExactFlow {
             return;
         }
         let start = state.clone();
+        let ratchet = model.friction.is_some_and(|friction| friction.ratchet);
         self.look(model, state);
         let longest = 2.0 / series::fastest_rate(model);
-        let (mut at, mut released) = (0.0, None);
+        let (mut at, mut turned) = (0.0, None);
         for _ in 0..MOST_SEGMENTS {
             if at >= model.dt {
                 model.note_lengths(state);
@@ -81,7 +82,7 @@ impl<const D: usize> Integrator<f64, D> for ExactFlow {
             self.series.begin(model, state, time + at);
             self.clamp(model);
             let length = self.series.until_kink(model, time + at, longest.min(model.dt - at));
-            self.settle(model, state, released.take());
+            self.settle(model, state, turned.take());
             self.series.extend(model, &self.slide, &self.side, &self.clamped, length);
             model.evaluations += self.series.terms() as f64;
             let event = events::first(self, model, length);
@@ -91,8 +92,15 @@ impl<const D: usize> Integrator<f64, D> for ExactFlow {
             at = if event.is_none() && length >= model.dt - at { model.dt } else { at + reach };
             match event.map(|(_, event)| event) {
                 None => {}
-                Some(Event::Rests(mass)) => state.velocity[mass][0] = 0.0,
-                Some(Event::Slips(mass)) => released = Some(mass),
+                Some(Event::Rests(mass)) => {
+                    state.velocity[mass][0] = 0.0;
+                    turned = match self.slide[mass] {
+                        _ if ratchet => None,
+                        Slide::Forward => Some((mass, Slide::Back)),
+                        _ => Some((mass, Slide::Forward)),
+                    };
+                }
+                Some(Event::Slips(mass)) => turned = Some((mass, Slide::Forward)),
                 Some(Event::Passes(spring)) => {
                     self.side[spring] = -self.side[spring];
                     self.look_forward(model, state);
@@ -138,10 +146,16 @@ impl ExactFlow {
         }
     }
 
-    /// How each mass slides from here on. `released` has just been let go.
-    fn settle<const D: usize>(&mut self, model: &Model<f64, D>, state: &mut State<f64, D>, released: Option<usize>) {
+    /// How each mass slides from here on. An event has said it of the one that `turned`.
+    fn settle<const D: usize>(
+        &mut self,
+        model: &Model<f64, D>,
+        state: &mut State<f64, D>,
+        turned: Option<(usize, Slide)>,
+    ) {
         self.slide.fill(Slide::Free);
-        let Some(friction) = model.friction else { return };
+        let friction = model.friction.filter(|friction| friction.ratchet || friction.has_drag);
+        let Some(friction) = friction else { return };
         let masses = model.spine.iter().map(|row| row.particle as usize);
         let feels = |mass: &usize| model.inverse_mass[*mass] > 0.0;
         if friction.ratchet {
@@ -158,7 +172,9 @@ impl ExactFlow {
             }
             let speed = state.velocity[mass][0] * forward;
             let push = forward * self.series.push(model, mass, &self.side, &self.clamped);
-            self.slide[mass] = if speed > 0.0 || released == Some(mass) {
+            self.slide[mass] = if let Some((_, slide)) = turned.filter(|(turned, _)| *turned == mass) {
+                slide
+            } else if speed > 0.0 {
                 Slide::Forward
             } else if friction.ratchet {
                 if push > 0.0 { Slide::Forward } else { Slide::Stuck }

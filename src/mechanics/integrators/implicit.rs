@@ -2,7 +2,8 @@
 //!
 //! M(u − v) = dt·F(t*, x*, v*) + R with x* = x₀ + a·dt·u and v* = v₀ + b·u; a method is its numbers. Newton's iteration solves it with the
 //! Jacobian M + dt·(b·C + a·dt·K), where K leaves out the negative stiffness that a compressed spring has across its line, so that the
-//! matrix is positive definite. The reactions R hold masses that the ratchet does not let slide back: 0 ≤ R ⟂ S·u ≥ 0, found by an active set.
+//! matrix is positive definite. The reactions R hold masses that the ratchet does not let slide back: 0 ≤ R ⟂ S·w ≥ 0 with w = u, or with the mean of
+//! v and u, against which R does no work; an active set finds them.
 //! Small bodies are solved by a sparse Cholesky factorisation whose pattern is analysed once, large ones by conjugate gradients.
 
 mod linear;
@@ -24,6 +25,8 @@ pub(super) struct Scheme {
     pub(super) at: f64,
     /// b: how much of u, the rest being v.
     pub(super) velocity: f64,
+    /// How much of u is in the velocity w that the ratchet admits, the rest being v.
+    pub(super) admitted: f64,
     /// How much of dt·v is in x*.
     pub(super) position_old: f64,
     /// a: how much of dt·u is in x*.
@@ -46,6 +49,8 @@ pub(super) struct Implicit<const D: usize> {
     /// Directions in which friction acts; as many as the spine has masses.
     frames: Vec<Frame<f64, D>>,
     stuck: Vec<bool>,
+    /// The least S·u that the ratchet admits, of each mass of the spine.
+    floor: Vec<f64>,
     linear: Option<Linear<D>>,
 }
 
@@ -65,23 +70,26 @@ impl<const D: usize> Implicit<D> {
             image: zeros,
             frames: Vec::new(),
             stuck: Vec::new(),
+            floor: Vec::new(),
             linear: None,
         }
     }
 
-    /// Takes a step: u, then x⁺ = x + dt·((1 − b)v + b·u).
+    /// Takes a step: u, then x⁺ = x + dt·((1 − b)v + b·u). What friction then takes from u is part of the way where R acts on u itself.
     pub(super) fn step(&mut self, scheme: &Scheme, model: &mut Model<f64, D>, state: &mut State<f64, D>, time: f64) {
         if self.solve(scheme, model, state, time).is_err() {
             model.refused = 1.0;
             return;
         }
+        self.change.copy_from_slice(&self.velocity);
         model.finish_velocity(&state.position, &mut self.velocity);
-        for ((x, v), u) in state.position.iter_mut().zip(&mut state.velocity).zip(&self.velocity) {
+        let way = if scheme.admitted == 1.0 { &self.velocity } else { &self.change };
+        for ((x, v), u) in state.position.iter_mut().zip(&state.velocity).zip(way) {
             for axis in 0..D {
                 x[axis] += model.dt * (v[axis] + scheme.velocity * (u[axis] - v[axis]));
             }
-            *v = *u;
         }
+        state.velocity.copy_from_slice(&self.velocity);
         model.apply_contact(state);
         model.note_lengths(state);
     }
@@ -108,7 +116,7 @@ impl<const D: usize> Implicit<D> {
         state: &State<f64, D>,
         time: f64,
     ) -> Result<(), Diverged> {
-        self.begin(model, state);
+        self.begin(scheme, model, state);
         let ratchet = model.friction.is_some_and(|friction| friction.ratchet);
         self.velocity.copy_from_slice(&state.velocity);
         let scale = self.evaluate(scheme, model, state, time);
@@ -125,7 +133,7 @@ impl<const D: usize> Implicit<D> {
                 let wrong = if self.stuck[i] {
                     dot(self.residual[mass], frame.spine) * model.inverse_mass[mass] < -slack
                 } else {
-                    dot(self.velocity[mass], frame.spine) < -slack
+                    dot(self.velocity[mass], frame.spine) < self.floor[i] - slack
                 };
                 if wrong {
                     self.stuck[i] = !self.stuck[i];
@@ -141,14 +149,18 @@ impl<const D: usize> Implicit<D> {
     }
 
     /// Friction's directions in the middle of the step, and the masses that are taken to rest on because they rest now.
-    fn begin(&mut self, model: &Model<f64, D>, state: &State<f64, D>) {
+    fn begin(&mut self, scheme: &Scheme, model: &Model<f64, D>, state: &State<f64, D>) {
         self.frames.clear();
         self.stuck.clear();
+        self.floor.clear();
         let (Some(friction), StickRule::InStages) = (model.friction, model.stick) else { return };
         for (middle, (x, v)) in self.stage.position.iter_mut().zip(state.position.iter().zip(&state.velocity)) {
             *middle = core::array::from_fn(|axis| x[axis] + 0.5 * model.dt * v[axis]);
         }
         self.frames.extend(model.spine.iter().map(|&row| model.frame(row, &self.stage.position)));
+        self.floor.extend(model.spine.iter().zip(&self.frames).map(|(row, frame)| {
+            (1.0 - 1.0 / scheme.admitted) * dot(state.velocity[row.particle as usize], frame.spine)
+        }));
         self.stuck.extend(model.spine.iter().zip(&self.frames).map(|(row, frame)| {
             let speed = dot(state.velocity[row.particle as usize], frame.spine);
             friction.ratchet && frame.touches != 0.0 && speed <= 0.0
@@ -168,9 +180,9 @@ impl<const D: usize> Implicit<D> {
         let affine = D == 1 || scheme.position_new == 0.0;
         self.linear.get_or_insert_with(|| Linear::new(model));
         self.velocity.copy_from_slice(&state.velocity);
-        for (row, frame) in stuck_masses(model, &self.frames, &self.stuck) {
-            let u = &mut self.velocity[row];
-            subtract(u, frame.spine, dot(*u, frame.spine));
+        for (i, row) in model.spine.iter().enumerate().filter(|(i, _)| self.stuck.get(*i) == Some(&true)) {
+            let (u, along) = (&mut self.velocity[row.particle as usize], self.frames[i].spine);
+            subtract(u, along, dot(*u, along) - self.floor[i]);
         }
         let left = if affine { TOLERANCE } else { LEFT };
         let mut last = f64::INFINITY;

@@ -22,7 +22,7 @@ pub(super) const ABOUT: About = About {
 #[derive(Clone, Debug)]
 pub struct ImplicitEuler<const D: usize>(Implicit<D>);
 
-const SCHEME: Scheme = Scheme { at: 1.0, velocity: 1.0, position_old: 0.0, position_new: 1.0 };
+const SCHEME: Scheme = Scheme { at: 1.0, velocity: 1.0, admitted: 1.0, position_old: 0.0, position_new: 1.0 };
 
 impl<const D: usize> Integrator<f64, D> for ImplicitEuler<D> {
     fn new(particles: usize) -> Self {

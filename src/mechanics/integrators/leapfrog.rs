@@ -22,7 +22,7 @@ pub(super) const ABOUT: About = About {
 #[derive(Clone, Debug)]
 pub struct Leapfrog<const D: usize>(Implicit<D>);
 
-const SCHEME: Scheme = Scheme { at: 0.5, velocity: 0.5, position_old: 0.5, position_new: 0.0 };
+const SCHEME: Scheme = Scheme { at: 0.5, velocity: 0.5, admitted: 1.0, position_old: 0.5, position_new: 0.0 };
 
 impl<const D: usize> Integrator<f64, D> for Leapfrog<D> {
     fn new(particles: usize) -> Self {

@@ -104,7 +104,12 @@ impl<const D: usize> Linear<D> {
                     continue;
                 }
                 let weight = of_damping * frame.touches / model.inverse_mass[mass];
-                let slides = if dot(stage.velocity[mass], frame.forward) >= 0.0 { friction.drag } else { 0.0 };
+                // With the ratchet nothing slides back, however rounding has it.
+                let slides = if friction.ratchet || dot(stage.velocity[mass], frame.forward) >= 0.0 {
+                    friction.drag
+                } else {
+                    0.0
+                };
                 add(&mut self.diagonal[mass], frame.forward, weight * slides);
                 add(&mut self.diagonal[mass], frame.side, weight * friction.grip);
             }

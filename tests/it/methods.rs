@@ -1,0 +1,207 @@
+//! Every method against exact solutions: order, exactness, and what is called unconditionally stable.
+
+use bevy::{math::DVec3, prelude::*};
+use wriggle::{
+    body::{Particle, ParticleId, Particles, Spring, Springs},
+    mechanics::integrators::{Method, StickRule},
+    physics::{Cost, Frozen},
+};
+
+use crate::support::{Worm, in_space, particles, stepping_app};
+
+/// Positions and velocities along x.
+fn columns(particles: &Particles) -> Vec<f64> {
+    particles.positions().chain(particles.velocities()).map(|vector| vector.x).collect()
+}
+
+/// The worm at t = 20, after steps of `dt`.
+fn worm_at_20(worm: Worm, stick: StickRule, dt: f64) -> Vec<f64> {
+    worm_at(20.0, worm, stick, dt)
+}
+
+fn worm_at(time: f64, worm: Worm, stick: StickRule, dt: f64) -> Vec<f64> {
+    let mut app = stepping_app(dt, (time / dt).round() as u64);
+    let body = app.world_mut().spawn((worm.body(), stick)).id();
+    app.update();
+    assert!(app.world().get::<Frozen>(body).is_none(), "{worm:?}: {:?}", app.world().get::<Frozen>(body));
+    columns(particles(&app, body))
+}
+
+fn farthest(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+}
+
+#[test]
+fn the_exact_flow_is_exact_whatever_the_step() {
+    let known = [3.058918927290, 3.994998746503, 5.085548685141, 0.232059061039, 0.202115095212, 0.063038244008];
+    let worm = Worm { method: Method::ExactFlow, ..Worm::EXACT };
+    for dt in [20.0, 0.5, 0.05, 0.01] {
+        let error = farthest(&worm_at_20(worm, StickRule::InStages, dt), &known);
+        assert!(error < 1e-11, "{error:e} at dt {dt}");
+    }
+}
+
+#[test]
+fn the_exact_flow_knows_ramp_drag_and_squares() {
+    use wriggle::body::{Muscle, Muscles, SpringId, Wave};
+    // What converges to it knows nothing of its polynomials and events. Runge–Kutta with small steps is as near as its unlocated events let it.
+    for wave in [Wave::Sine, Wave::Square] {
+        let body = |method| {
+            let mut body = Worm { method, ..Worm::GARDEN }.body();
+            let muscle = |i: u32| Muscle {
+                wave,
+                ..Muscle {
+                    spring: SpringId(i),
+                    wave,
+                    amplitude: 0.3,
+                    period: 6.0,
+                    phase: 0.25 * f64::from(i),
+                    ramp: 1.0,
+                }
+            };
+            body.muscles = Muscles::new((0..2).map(muscle), &body.springs).unwrap();
+            body
+        };
+        let run = |method, dt: f64| {
+            let mut app = stepping_app(dt, (18.0 / dt).round() as u64);
+            let entity = app.world_mut().spawn(body(method)).id();
+            app.update();
+            columns(particles(&app, entity))
+        };
+        let (exact, other) = (run(Method::ExactFlow, 0.3), run(Method::RungeKutta4, 0.0005));
+        assert!(farthest(&exact, &run(Method::ExactFlow, 0.05)) < 1e-11, "{wave:?}: steps of the flow matter");
+        let error = farthest(&exact, &other);
+        // A square wave switches within a step.
+        let bound = if wave == Wave::Sine { 1e-6 } else { 1e-3 };
+        assert!(error < bound, "{wave:?}: {error:e}");
+    }
+}
+
+#[test]
+fn every_method_has_its_order() {
+    // Smooth: no friction, the muscles driving. Damping makes Verlet's methods see an old velocity: first order.
+    for damping in [0.0, 0.9] {
+        for method in Method::ALL {
+            let worm = Worm { method, damping, ratchet: false, drag: 0.0, ..Worm::EXACT };
+            let exact = worm_at(4.0, Worm { method: Method::ExactFlow, ..worm }, StickRule::InStages, 0.5);
+            let order = match method {
+                Method::ExactFlow => continue,
+                Method::StormerVerlet | Method::DampedVerlet if damping > 0.0 => 1,
+                method => method.about().order,
+            };
+            let first = if order == 1 { 0.004 } else { 0.05 };
+            let errors: Vec<_> = (0..4)
+                .map(|halvings| worm_at(4.0, worm, StickRule::InStages, first / f64::from(1 << halvings)))
+                .map(|end| farthest(&end, &exact))
+                .collect();
+            for pair in errors.windows(2) {
+                let observed = libm::log2(pair[0] / pair[1]);
+                assert!((observed - f64::from(order)).abs() < 0.1, "{method:?}, D {damping}: {observed} of {errors:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn friction_at_the_end_of_the_step_makes_every_method_first_order() {
+    let exact = worm_at_20(Worm { method: Method::ExactFlow, ..Worm::EXACT }, StickRule::InStages, 0.5);
+    for method in [Method::RungeKutta4, Method::RungeKutta2, Method::Leapfrog, Method::ImplicitMidpoint] {
+        let worm = Worm { method, ..Worm::EXACT };
+        let error = |stick, dt| farthest(&worm_at_20(worm, stick, dt), &exact);
+        let (coarse, fine) = (error(StickRule::EndOfStep, 0.01), error(StickRule::EndOfStep, 0.0025));
+        let order = libm::log2(coarse / fine) / 2.0;
+        assert!((0.7..1.3).contains(&order), "{method:?}: order {order}");
+        assert!(error(StickRule::InStages, 0.01) < 0.2 * coarse, "{method:?} gains from the rule in its stages");
+    }
+}
+
+#[test]
+fn what_no_step_makes_unstable_stays_bounded_a_thousand_times_beyond() {
+    // ω·dt = 1000 for the fastest mode, ω² = 3k/m, with the muscles running.
+    let dt = 0.05;
+    for method in Method::ALL
+        .into_iter()
+        .filter(|method| Worm { method: *method, ..Worm::EXACT }.body().parts().stability_limit(false).is_infinite())
+    {
+        let stiffness = (1000.0 / dt) * (1000.0 / dt) / 3.0;
+        for damping in [0.0, 0.9, 1e4] {
+            // The exact flow follows every oscillation; a few steps of it say as much.
+            let steps = if method == Method::ExactFlow { 5 } else { 2000 };
+            let mut app = stepping_app(dt, steps);
+            let mut worm = Worm { method, stiffness, damping, ..Worm::EXACT }.body();
+            // It starts as its muscles want it: stiff springs that start stretched would rightly throw it far.
+            for (i, (x, v)) in [(0.0, 0.0), (1.0, 0.25), (1.75, 0.25)].into_iter().enumerate() {
+                let velocity = DVec3::X * v * core::f64::consts::PI;
+                worm.particles.set(ParticleId(i as u32), Particle { velocity, ..Particle::at(DVec3::X * x) }).unwrap();
+            }
+            let body = app.world_mut().spawn(worm).id();
+            app.update();
+            assert!(app.world().get::<Frozen>(body).is_none(), "{method:?}, D {damping}");
+            let x: Vec<_> = particles(&app, body).positions().map(|x| x.x).collect();
+            for length in [x[1] - x[0], x[2] - x[1]] {
+                assert!((0.4..1.6).contains(&length), "{method:?}, D {damping}: length {length}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_step_that_does_not_converge_is_refused_by_name() {
+    for method in [Method::ImplicitEuler, Method::ImplicitMidpoint] {
+        let ends =
+            [Particle::at(DVec3::ZERO), Particle { velocity: DVec3::new(1e200, 1e200, 0.0), ..Particle::at(DVec3::X) }];
+        let body = Particles::new(ends).unwrap();
+        let spring = Spring { ends: [ParticleId(0), ParticleId(1)], stiffness: 1.0, damping: 0.0, rest_length: 1.0 };
+        let springs = Springs::new([spring], &body).unwrap();
+        let mut app = stepping_app(0.1, 3);
+        let entity = app.world_mut().spawn((body.clone(), springs, method)).id();
+        app.update();
+        let frozen = app.world().get::<Frozen>(entity).unwrap();
+        assert!(frozen.reason.contains(method.name()) && frozen.reason.contains("converge"), "{}", frozen.reason);
+        assert_eq!((frozen.step, particles(&app, entity)), (1, &body), "it stays where it was");
+    }
+}
+
+#[test]
+fn the_exact_flow_refuses_what_is_not_on_an_axis() {
+    let mut app = stepping_app(0.1, 3);
+    let body = Worm { method: Method::ExactFlow, ..Worm::GARDEN }.body().moved(DVec3::ZERO, 0.4);
+    let entity = app.world_mut().spawn(body).id();
+    app.update();
+    assert!(app.world().get::<Frozen>(entity).unwrap().reason.contains("on an axis"));
+}
+
+#[test]
+fn the_same_force_is_one_evaluation_in_every_method() {
+    for method in Method::ALL.into_iter().filter(|method| method.about().evaluations.is_some()) {
+        let mut app = stepping_app(0.01, 100);
+        app.world_mut().spawn(Worm { method, ..Worm::GARDEN }.body());
+        app.update();
+        let evaluations = app.world().resource::<Cost>().force_evaluations;
+        assert_eq!(Some(evaluations), method.about().evaluations.map(|each| 100 * each), "{method:?}");
+    }
+}
+
+#[test]
+fn damped_verlet_takes_its_part_of_the_velocity_in_each_step() {
+    use wriggle::body::MassDamping;
+    // A mass alone, against the closed forms: e^(−ct) for a rate, (1 − λ)^n for a part.
+    for method in in_space() {
+        let coasting = |damping| {
+            let mut app = stepping_app(0.01, 100);
+            let particle = Particle { velocity: DVec3::X, ..Particle::at(DVec3::ZERO) };
+            let body = (Particles::new([particle]).unwrap(), Springs::default(), method, damping);
+            let entity = app.world_mut().spawn(body).id();
+            app.update();
+            particles(&app, entity).velocity(ParticleId(0)).unwrap().x
+        };
+        let rate = coasting(MassDamping::rate(0.7).unwrap());
+        let exact = libm::exp(-0.7);
+        let bound = if method == Method::DampedVerlet { 1e-14 } else { 2e-3 };
+        assert!((rate - exact).abs() < bound, "{method:?}: {rate} for {exact}");
+        let part = coasting(MassDamping::per_step(0.05).unwrap());
+        let exact = libm::pow(0.95, 100.0);
+        assert!((part - exact).abs() < if method == Method::DampedVerlet { 1e-14 } else { 1e-3 }, "{method:?}: {part}");
+    }
+    assert!(MassDamping::per_step(1.0).is_err() && MassDamping::rate(-0.1).is_err());
+}
