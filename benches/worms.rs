@@ -45,7 +45,7 @@ fn resident_bytes() -> Option<u64> {
 fn benchmarks(c: &mut Criterion) {
     let mut group = c.benchmark_group("tick");
     group.warm_up_time(Duration::from_millis(500)).measurement_time(Duration::from_secs(3)).sample_size(20);
-    for method in Method::ALL {
+    for method in [Method::SemiImplicitEuler, Method::RungeKutta4] {
         for count in [1, 1_000, 10_000] {
             let before = resident_bytes();
             let mut app = worms(count, method);

@@ -5,13 +5,14 @@ use std::collections::HashMap;
 
 use bevy::{
     ecs::{change_detection::DetectChanges, change_detection::Tick, prelude::*},
-    prelude::Name,
+    prelude::{Camera, GlobalTransform, Name, Vec3},
     time::{Fixed, Real, Time, Virtual},
 };
 
 use super::{
     gauge::Gauge,
     names::Path,
+    race::RunnerInfo,
     setting::Setting,
     settings::{Action, BodyInfo, Settings},
     traces::Traces,
@@ -19,8 +20,10 @@ use super::{
 use crate::{
     body::Particles,
     creatures::library,
-    physics::{BodyFrozen, Clock, Frozen, Plan, Restart},
-    scenes::{self, CurrentScene, SceneChange, SceneProblem, parameters},
+    mechanics::integrators::Method,
+    physics::{BodyFrozen, Clock, Frozen, Plan, Restart, Shown, Work},
+    scenes::{self, CurrentScene, Runner, SceneChange, SceneProblem, parameters},
+    view::SceneCamera,
 };
 
 /// Seconds between two readings of all parameters: others than the panel change them rarely.
@@ -70,6 +73,7 @@ pub fn read(world: &mut World) {
                 read_parameters(world, &mut settings, &mut known, opened);
             }
             settings.gauge = gauge(world);
+            settings.race = race(world);
         });
     });
 }
@@ -157,6 +161,38 @@ fn read_parameters(world: &mut World, settings: &mut Settings, known: &mut Known
     known.read_at = world.get_resource::<Time<Real>>().map(|time| time.elapsed_secs_f64());
 }
 
+/// The runners of a race, the truth first.
+fn race(world: &mut World) -> Vec<RunnerInfo> {
+    let time = world.get_resource::<Clock>().map_or(0.0, Clock::time);
+    let mut cameras = world.query_filtered::<(&Camera, &GlobalTransform), With<SceneCamera>>();
+    let camera = cameras.iter(world).next().map(|(camera, transform)| (camera.clone(), *transform));
+    let mut runners = world.query::<(Entity, &Runner, &Method, &Work, &Plan, &Shown, Has<Frozen>)>();
+    let mut race: Vec<_> = runners
+        .iter(world)
+        .map(|(entity, runner, method, work, plan, shown, frozen)| {
+            // Above the head.
+            let place = shown.positions().last().zip(camera.as_ref()).and_then(|(head, (camera, transform))| {
+                camera.world_to_viewport(transform, *head + Vec3::new(0.7, 0.5, 0.0)).ok()
+            });
+            let info = RunnerInfo {
+                entity,
+                truth: runner.lane == 0,
+                color: runner.color(),
+                method: *method,
+                error: runner.error,
+                worst: runner.worst,
+                cost: if time > 0.0 { work.force_evaluations as f64 / time } else { 0.0 },
+                limit: plan.stability_limit(),
+                frozen,
+                place: place.map(|place| (place.x, place.y)),
+            };
+            (runner.lane, info)
+        })
+        .collect();
+    race.sort_by_key(|(lane, _)| *lane);
+    race.into_iter().map(|(_, info)| info).collect()
+}
+
 /// The body for which dt is nearest to its limit.
 fn gauge(world: &mut World) -> Option<Gauge> {
     let dt = world.get_resource::<Clock>()?.dt();
@@ -185,6 +221,10 @@ pub fn apply(world: &mut World) {
 fn act(world: &mut World, settings: &mut Settings, action: Action) {
     match action {
         Action::Set { path, value } => {
+            for other in same_of_other_runners(settings, &path) {
+                // What one runner refuses its twins refuse as well, and one answer is enough.
+                parameters::set(world, &other, value).ok();
+            }
             if let Err(refusal) = parameters::set(world, &path, value) {
                 match settings.get_mut(&path) {
                     Some(setting) => setting.refusal = Some(refusal.to_string()),
@@ -193,6 +233,11 @@ fn act(world: &mut World, settings: &mut Settings, action: Action) {
             }
         }
         Action::Method(method) => parameters::set_method(world, method),
+        Action::MethodOf(body, method) => {
+            if let Some(mut old) = world.get_mut::<Method>(body) {
+                old.set_if_neq(method);
+            }
+        }
         Action::Pause(paused) => pause(world, paused),
         Action::Tick => {
             pause(world, true);
@@ -218,6 +263,16 @@ fn act(world: &mut World, settings: &mut Settings, action: Action) {
             world.write_message(SceneChange::Reload);
         }
     }
+}
+
+/// The same parameter of all other runners of a race: they stay one creature.
+fn same_of_other_runners(settings: &Settings, path: &str) -> Vec<String> {
+    let owner = Path::parse(path).owner;
+    let names = settings.bodies.iter().map(|body| body.name.as_str());
+    if settings.race.is_empty() || !names.clone().any(|name| name == owner) {
+        return Vec::new();
+    }
+    names.filter(|name| *name != owner).map(|name| format!("{name}{}", &path[owner.len()..])).collect()
 }
 
 fn pause(world: &mut World, paused: bool) {

@@ -12,6 +12,7 @@ pub mod gauge;
 mod keys;
 mod names;
 pub mod plots;
+pub mod race;
 mod ring;
 mod row;
 mod sampling;
@@ -120,6 +121,7 @@ fn say_width(settings: Res<Settings>, mut covered: ResMut<CoveredLeft>) {
 /// It is an area and no side panel of egui's: only areas count as under the pointer while they have no background of egui's around
 /// them, and without that a click between two sliders would move the camera.
 pub fn show(context: &egui::Context, settings: &mut Settings, traces: &Traces) {
+    race::labels(context, settings);
     let area = egui::Area::new(egui::Id::new("panel")).fixed_pos(egui::Pos2::ZERO).movable(false).constrain(false);
     if settings.hidden {
         area.show(context, |ui| {
@@ -167,6 +169,9 @@ fn sections(ui: &mut egui::Ui, settings: &mut Settings, traces: &Traces) {
         let body = settings.body().map_or_else(|| "Body".into(), |body| format!("Body: {}", body.name));
         section(ui, "body", &body, true, |ui| bodies::section(ui, settings));
         section(ui, "time", "Time and method", true, |ui| time::section(ui, settings));
+        if !settings.race.is_empty() {
+            section(ui, "race", "Race", true, |ui| race::section(ui, settings));
+        }
         section(ui, "plots", "Plots", true, |ui| plots::section(ui, settings, traces));
         section(ui, "files", "Scenes and files", true, |ui| files::section(ui, settings));
     });

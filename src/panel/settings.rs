@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use bevy::ecs::prelude::*;
 
-use super::{gauge::Gauge, row::Edit, setting::Setting};
+use super::{gauge::Gauge, race::RunnerInfo, row::Edit, setting::Setting};
 use crate::mechanics::integrators::Method;
 
 /// At most this many messages are kept; older ones go.
@@ -24,6 +24,8 @@ pub struct Settings {
     pub selected: usize,
     /// The method of the scene.
     pub method: Method,
+    /// The runners of a race, the truth first; none where there is no race.
+    pub race: Vec<RunnerInfo>,
     /// Whether time stands still.
     pub paused: bool,
     /// While in slow motion: the time scale to go back to.
@@ -125,6 +127,8 @@ pub enum Action {
     },
     /// Move every body by this method.
     Method(Method),
+    /// Step one body by this method.
+    MethodOf(Entity, Method),
     /// Stop time, or let it go on.
     Pause(bool),
     /// Take exactly one tick, and stand still.
@@ -172,6 +176,11 @@ impl Settings {
             Edit::Reset => setting.default,
         };
         self.request(path, value);
+    }
+
+    /// The step, 0 while it is not known.
+    pub fn dt(&self) -> f64 {
+        self.get("clock.dt").map_or(0.0, |setting| setting.value)
     }
 
     /// Stops time or lets it go on.

@@ -44,7 +44,10 @@ pub fn section(ui: &mut egui::Ui, settings: &mut Settings) {
     parameter(ui, settings, TIME_SCALE);
     parameter(ui, settings, DT);
     steps_per_tick(ui, settings);
-    method(ui, settings);
+    // In a race each lane has its own.
+    if settings.race.is_empty() {
+        method(ui, settings);
+    }
 }
 
 /// Turns slow motion on, or back to the time scale before it.
@@ -117,7 +120,7 @@ fn method(ui: &mut egui::Ui, settings: &mut Settings) {
 }
 
 /// A method's name in words: `RungeKutta4` as `Runge Kutta 4`.
-fn name(method: Method) -> String {
+pub(super) fn name(method: Method) -> String {
     let mut words = String::new();
     for character in method.name().chars() {
         if !words.is_empty() && !character.is_lowercase() {

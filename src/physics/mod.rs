@@ -33,7 +33,7 @@ use crate::{body::Particles, mechanics::integrators::Method};
 pub use clock::{Clock, Pace};
 pub use plan::Plan;
 pub use restart::{Restart, StartState};
-pub use step::Cost;
+pub use step::{Cost, Work};
 pub use sync::{FollowParticle, Previous, Shown, ShownLap};
 pub use watch::{BodyFrozen, Frozen, Verdict};
 
@@ -89,6 +89,7 @@ impl Plugin for PhysicsPlugin {
         app.register_required_components::<Particles, Method>()
             .register_required_components::<Particles, Plan>()
             .register_required_components::<Particles, Verdict>()
+            .register_required_components::<Particles, Work>()
             .register_required_components::<Particles, Previous>()
             .register_required_components::<Particles, Shown>()
             .add_observer(restart::remember_start);

@@ -4,7 +4,7 @@ use bevy::ecs::prelude::*;
 
 use crate::body::{Muscles, Particles};
 
-use super::{Clock, Cost, Frozen, Previous};
+use super::{Clock, Cost, Frozen, Previous, Work};
 
 /// Asks for every body to be put back to where it was spawned and for time 0. Frozen bodies go on; parameters stay as they are.
 #[derive(Clone, Copy, Debug, Default, Message)]
@@ -26,7 +26,7 @@ pub(super) fn restart(
     mut asked: MessageReader<Restart>,
     mut clock: ResMut<Clock>,
     mut cost: ResMut<Cost>,
-    mut bodies: Query<(Entity, &mut Particles, &mut Previous, &StartState, Option<&mut Muscles>)>,
+    mut bodies: Query<(Entity, &mut Particles, &mut Previous, &StartState, &mut Work, Option<&mut Muscles>)>,
     mut commands: Commands,
 ) {
     if asked.read().count() == 0 {
@@ -34,7 +34,8 @@ pub(super) fn restart(
     }
     clock.rewind();
     *cost = Cost::default();
-    for (body, mut particles, mut previous, start, muscles) in &mut bodies {
+    for (body, mut particles, mut previous, start, mut work, muscles) in &mut bodies {
+        *work = Work::default();
         particles.set_state(&start.0);
         previous.position.clone_from(start.0.position_columns());
         if let Some(mut muscles) = muscles {

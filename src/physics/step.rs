@@ -34,12 +34,20 @@ pub struct Cost {
     pub seconds: f64,
 }
 
+/// What one body has cost since it was spawned or restarted. Physics keeps it.
+#[derive(Clone, Component, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Work {
+    /// Evaluations of its forces.
+    pub force_evaluations: u64,
+}
+
 /// A body on its way through a tick.
 struct Item<'a> {
     particles: Mut<'a, Particles>,
     parts: PartsItem<'a, 'a>,
     plan: &'a Plan,
     verdict: Mut<'a, Verdict>,
+    work: Mut<'a, Work>,
     on_axis: bool,
     /// How often its forces were evaluated in this tick, up to the step in which it exploded if it did.
     evaluations: u64,
@@ -62,7 +70,7 @@ pub(super) fn step(
     time: Res<Time>,
     mut clock: ResMut<Clock>,
     mut cost: ResMut<Cost>,
-    mut bodies: Query<(&mut Particles, Parts, &Plan, &mut Verdict), Without<Frozen>>,
+    mut bodies: Query<(&mut Particles, Parts, &Plan, &mut Verdict, &mut Work), Without<Frozen>>,
 ) {
     let start = Instant::now();
     let steps = clock.take_steps(time.delta_secs_f64());
@@ -73,7 +81,7 @@ pub(super) fn step(
     let (timeline, range) = (clock.timeline(), clock.step()..clock.step() + steps);
     let mut items: Vec<_> = bodies
         .iter_mut()
-        .filter_map(|(particles, parts, plan, mut verdict)| {
+        .filter_map(|(particles, parts, plan, mut verdict, work)| {
             if let Some(reason) = plan.misfit.clone() {
                 let (step, time) = (range.start, timeline.time_at(range.start));
                 *verdict = Verdict(Some(Failure { step, time, particle: ParticleId(0), reason }));
@@ -81,7 +89,7 @@ pub(super) fn step(
             }
             let body = parts.body(&particles);
             let on_axis = body.on_axis();
-            Some(Item { particles, parts, plan, verdict, on_axis, evaluations: 0 })
+            Some(Item { particles, parts, plan, verdict, work, on_axis, evaluations: 0 })
         })
         .collect();
     items.sort_by_key(|item| (item.plan.topology, item.on_axis));
@@ -110,7 +118,8 @@ pub(super) fn step(
             });
         }
     }
-    for item in &items {
+    for item in &mut items {
+        item.work.bypass_change_detection().force_evaluations += item.evaluations;
         cost.force_evaluations += item.evaluations;
         cost.spring_updates += item.evaluations * item.body().springs.len() as u64;
     }

@@ -46,6 +46,10 @@ pub struct SceneFile {
     /// When friction acts in a step of the method. Left out: in its stages.
     #[serde(default, skip_serializing_if = "is_default")]
     pub stick: StickRule,
+    /// The name of the creature that the others are measured against: a race. Each of the others is shown over the ghost of this one. Left out: no
+    /// race.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub truth: Option<String>,
     /// How much error it can afford. Left out: one pixel.
     #[serde(default)]
     pub budget: Budget,
@@ -84,6 +88,9 @@ pub struct Placement {
     /// Which way it looks, in degrees about the vertical; positive turns from +x towards +z. Left out: 0, along +x.
     #[serde(default, deserialize_with = "numbers::finite")]
     pub heading: f64,
+    /// Its own method. Left out: that of the scene.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub method: Option<Method>,
 }
 
 /// What stands around.

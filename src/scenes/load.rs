@@ -109,12 +109,14 @@ pub fn load_creature(name: &str) -> Result<LoadedScene, FileError> {
             creature: reference(&source),
             at: (0.0, 0.0, 0.0),
             heading: 0.0,
+            method: None,
         }],
         props: Props::None,
         camera: Camera::default(),
         clock: SceneClock::default(),
         method: Method::default(),
         stick: StickRule::default(),
+        truth: None,
         budget: super::Budget::default(),
         set: Default::default(),
     };
@@ -129,9 +131,29 @@ pub(super) fn reference(source: &Source) -> String {
     }
 }
 
+/// A race's runners are what they are measured against, and look the same way.
+fn check_truth(scene: &LoadedScene) -> Result<(), FileError> {
+    let Some(truth) = &scene.file.truth else { return Ok(()) };
+    let Some(index) = scene.file.creatures.iter().position(|placement| placement.name == *truth) else {
+        let names: Vec<_> = scene.file.creatures.iter().map(|placement| placement.name.as_str()).collect();
+        let problem = format!("no creature is called \"{truth}\"; give one of {}", names.join(", "));
+        return Err(scene_conflict(scene, "truth".into(), problem));
+    };
+    let (model, count) = (&scene.file.creatures[index], scene.creatures[index].1.particle_count());
+    for (i, (placement, (_, creature))) in scene.file.creatures.iter().zip(&scene.creatures).enumerate() {
+        if placement.heading != model.heading || creature.particle_count() != count {
+            let problem =
+                format!("must have the heading and the {count} particles of \"{truth}\", the truth of this race");
+            return Err(scene_conflict(scene, format!("creatures[{i}]"), problem));
+        }
+    }
+    Ok(())
+}
+
 /// Checks what single files cannot know, and that the scene can be opened.
 fn check(mut scene: LoadedScene) -> Result<LoadedScene, FileError> {
     check_names(&scene)?;
+    check_truth(&scene)?;
     let particles: usize = scene.creatures.iter().map(|(_, creature)| creature.particle_count()).sum();
     if particles > MOST_PARTICLES {
         return Err(scene_conflict(

@@ -23,7 +23,7 @@ use crate::{
 /// same again.
 ///
 /// Parameters that differ from those of the creature files stand under `set`. Writing is atomic: whatever happens, `path` holds what it
-/// held before or all of the new, and nothing else is left in its folder. A scene has one method: that of its first body.
+/// held before or all of the new, and nothing else is left in its folder.
 ///
 /// # Errors
 /// If no scene is open or the file cannot be written.
@@ -57,6 +57,9 @@ fn current(world: &mut World, scene: &LoadedScene, path: &Path) -> Result<SceneF
     let now = parameters::body_values(world);
     file.set = parameters::changes(base, now);
     file.method = parameters::method(world);
+    for (placement, method) in file.creatures.iter_mut().zip(parameters::methods(world)) {
+        placement.method = Some(method).filter(|method| *method != file.method);
+    }
     if let Some(clock) = world.get_resource::<Clock>() {
         let scale = clock.time_scale().unwrap_or(file.clock.time_scale);
         if clock.dt() != file.clock.dt() || scale != file.clock.time_scale {

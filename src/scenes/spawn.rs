@@ -7,7 +7,7 @@ use bevy::{
     reflect::Reflect,
 };
 
-use super::{FileError, LoadedScene, Props, SceneFile, garden, parameters};
+use super::{FileError, LoadedScene, Props, SceneFile, garden, parameters, race};
 use crate::{body::Gravity, physics::Clock};
 
 /// The scene that is open. Replaced when a scene is opened or reloaded, and not when a parameter changes.
@@ -82,7 +82,12 @@ fn spawn(world: &mut World, scene: &LoadedScene, bodies: Vec<crate::creatures::B
     let gravity = Gravity::new(file.gravity).ok().filter(|gravity| gravity.acceleration() > 0.0);
     let mut entities = Vec::with_capacity(bodies.len());
     for (placement, body) in file.creatures.iter().zip(bodies) {
-        let mut entity = world.spawn((Name::new(placement.name.clone()), SceneMember, file.method, file.stick));
+        let mut entity = world.spawn((
+            Name::new(placement.name.clone()),
+            SceneMember,
+            placement.method.unwrap_or(file.method),
+            file.stick,
+        ));
         if let Some(gravity) = gravity {
             entity.insert(gravity);
         }
@@ -94,6 +99,9 @@ fn spawn(world: &mut World, scene: &LoadedScene, bodies: Vec<crate::creatures::B
         }
         entities.push(entity.id());
         body.apply(entity);
+    }
+    if let Some(truth) = file.creatures.iter().position(|placement| Some(&placement.name) == file.truth.as_ref()) {
+        race::line_up(world, &entities, truth);
     }
     world.insert_resource(SceneBodies(entities));
 }

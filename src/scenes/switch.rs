@@ -2,8 +2,11 @@
 
 use bevy::{log::error, prelude::*};
 
-use super::{LoadedScene, load, open, spawn::Opened};
-use crate::creatures::library::Source;
+use super::{LoadedScene, load, open, race, spawn::Opened};
+use crate::{
+    creatures::library::Source,
+    physics::{Clock, PhysicsSystems},
+};
 
 /// Asks for another scene. It is open before the next tick; a bad file is answered by [`SceneProblem`].
 #[derive(Clone, Debug, Message, PartialEq, Eq)]
@@ -38,7 +41,14 @@ impl ScenesPlugin {
 
 impl Plugin for ScenesPlugin {
     fn build(&self, app: &mut App) {
-        app.add_message::<SceneChange>().add_message::<SceneProblem>().add_systems(PreUpdate, switch);
+        app.add_message::<SceneChange>()
+            .add_message::<SceneProblem>()
+            .add_systems(PreUpdate, switch)
+            .add_systems(FixedPostUpdate, race::measure.run_if(resource_exists::<Clock>))
+            .add_systems(
+                RunFixedMainLoop,
+                race::haunt.after(PhysicsSystems::Sync).in_set(RunFixedMainLoopSystems::AfterFixedMainLoop),
+            );
         if let Some(first) = self.first.clone() {
             app.add_systems(PreStartup, move |world: &mut World| try_open(world, Ok(first.clone())));
         }

@@ -8,6 +8,7 @@ mod adapter;
 mod camera;
 mod clay;
 mod garden;
+mod ghost;
 mod half;
 mod help;
 mod light;
@@ -41,7 +42,7 @@ pub struct ViewPlugin {
 
 impl Plugin for ViewPlugin {
     fn build(&self, app: &mut App) {
-        app.add_plugins((paint::plugin, half::plugin, camera::plugin, skins::plugin))
+        app.add_plugins((paint::plugin, half::plugin, camera::plugin, skins::plugin, ghost::plugin))
             .insert_resource(ClearColor(Color::srgb(0.72, 0.87, 0.95)))
             .add_systems(Update, decorate.run_if(resource_exists_and_changed::<CurrentScene>));
         if app.is_plugin_added::<WinitPlugin>() {

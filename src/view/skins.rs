@@ -10,7 +10,7 @@ use crate::{
     body::Springs,
     creatures::Look,
     physics::{PhysicsSystems, Shown},
-    scenes::{CurrentScene, Props, garden},
+    scenes::{CurrentScene, Props, Runner, garden},
 };
 
 pub(super) fn plugin(app: &mut App) {
@@ -37,7 +37,8 @@ struct Kits {
     plain: plain::PlainKit,
 }
 
-type Bodies<'w, 's> = Query<'w, 's, (Entity, &'static Look, &'static Shown, Option<&'static Springs>)>;
+type Bodies<'w, 's> =
+    Query<'w, 's, (Entity, &'static Look, &'static Shown, Option<&'static Springs>, Option<&'static Runner>)>;
 
 /// What skins are made from.
 #[derive(SystemParam)]
@@ -62,7 +63,7 @@ fn dress(
         }
     }
     skins.0.retain(|&body, &mut (root, look, particles, springs)| {
-        let stays = bodies.get(body).is_ok_and(|(_, now, shown, held)| {
+        let stays = bodies.get(body).is_ok_and(|(_, now, shown, held, _)| {
             (*now, shown.positions().len(), held.map_or(0, Springs::len)) == (look, particles, springs)
         });
         if !stays {
@@ -70,7 +71,7 @@ fn dress(
         }
         stays
     });
-    for (body, &look, shown, springs) in &bodies {
+    for (body, &look, shown, springs, runner) in &bodies {
         let (particles, held) = (shown.positions().len(), springs.map_or(0, Springs::len));
         if particles == 0 || skins.0.contains_key(&body) {
             continue;
@@ -89,7 +90,10 @@ fn dress(
             }
         });
         let root = match look {
-            Look::GardenWorm if particles >= 2 => worm::dress(body, particles, &kits.worm, &mut commands),
+            Look::GardenWorm if particles >= 2 => {
+                let dye = runner.map(Runner::color).map(|[r, g, b]| Color::srgb_u8(r, g, b));
+                worm::dress(body, particles, dye, &kits.worm, &mut cloth.paints, &mut commands)
+            }
             Look::GardenWorm | Look::Plain => plain::dress(body, particles, springs, &kits.plain, &mut commands),
         };
         skins.0.insert(body, (root, look, particles, held));

@@ -22,7 +22,7 @@ pub(super) struct WormKit {
     mouth: Handle<Mesh>,
     feeler: Handle<Mesh>,
     blot: Handle<Mesh>,
-    skin: Handle<Paint>,
+    skin: Paint,
     shadow: Handle<Paint>,
 }
 
@@ -36,7 +36,7 @@ impl WormKit {
             mouth: meshes.add(worm_parts::mouth()),
             feeler: meshes.add(worm_parts::feeler()),
             blot: meshes.add(worm_parts::blot()),
-            skin: paints.add(Paint { shelter, ..Paint::glossy(shadows, 0.7) }),
+            skin: Paint { shelter, ..Paint::glossy(shadows, 0.7) },
             shadow: paints.add(Paint::blot(if shadows { 0.5 } else { 1.0 })),
         }
     }
@@ -59,9 +59,19 @@ pub(super) enum Part {
     Blot(usize),
 }
 
-/// Spawns the skin of a worm of `count` particles.
-pub(super) fn dress(body: Entity, count: usize, kit: &WormKit, commands: &mut Commands) -> Entity {
+/// Spawns the skin of a worm of `count` particles, dyed where it has a colour of its own.
+pub(super) fn dress(
+    body: Entity,
+    count: usize,
+    dye: Option<Color>,
+    kit: &WormKit,
+    paints: &mut Assets<Paint>,
+    commands: &mut Commands,
+) -> Entity {
     let last = count - 1;
+    // The worm's own colours are warm and light: what they leave of the dye is to be no darker than the dye.
+    let tint = dye.map_or(Vec4::ONE, |dye| (dye.to_linear().to_vec3() * 1.5 + 0.05).extend(1.0));
+    let skin = paints.add(Paint { tint, ..kit.skin.clone() });
     let mut parts = vec![Part::Mouth, Part::Eye(-1.0), Part::Eye(1.0), Part::Feeler(-1.0), Part::Feeler(1.0)];
     for i in 0..count {
         parts.extend([Part::Segment(i), Part::Blot(i)]);
@@ -74,11 +84,11 @@ pub(super) fn dress(body: Entity, count: usize, kit: &WormKit, commands: &mut Co
     let root = commands.spawn((SceneMember, SkinOf(body), Transform::default(), Visibility::default())).id();
     for part in parts {
         let (mesh, paint) = match part {
-            Part::Segment(_) => (&kit.body, &kit.skin),
-            Part::Ring(..) | Part::Joint(_) => (&kit.ring, &kit.skin),
-            Part::Mouth => (&kit.mouth, &kit.skin),
-            Part::Eye(_) => (&kit.eye, &kit.skin),
-            Part::Feeler(_) => (&kit.feeler, &kit.skin),
+            Part::Segment(_) => (&kit.body, &skin),
+            Part::Ring(..) | Part::Joint(_) => (&kit.ring, &skin),
+            Part::Mouth => (&kit.mouth, &skin),
+            Part::Eye(_) => (&kit.eye, &skin),
+            Part::Feeler(_) => (&kit.feeler, &skin),
             Part::Blot(_) => (&kit.blot, &kit.shadow),
         };
         let mut part_of_it =

@@ -130,6 +130,11 @@ pub fn method(world: &mut World) -> Method {
     first.or_else(|| world.get_resource::<CurrentScene>().map(|scene| scene.file.method)).unwrap_or_default()
 }
 
+/// The methods of all bodies.
+pub(super) fn methods(world: &mut World) -> Vec<Method> {
+    bodies(world).into_iter().filter_map(|body| world.get::<Method>(body).copied()).collect()
+}
+
 /// The values of all bodies, element by element.
 pub(super) fn body_values(world: &mut World) -> Vec<Values> {
     let mut all = Vec::new();
