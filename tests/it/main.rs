@@ -16,6 +16,7 @@ mod panel;
 mod parameters;
 #[cfg(feature = "window")]
 mod picture;
+mod race;
 mod saving;
 mod stability;
 mod sync;

@@ -103,11 +103,17 @@ fn mean(points: &[Vec2]) -> Vec2 {
     points.iter().sum::<Vec2>() / points.len() as f32
 }
 
+/// Whether there is an adapter to draw with. Says so where there is none, which is an error where graphics are required.
+fn can_draw() -> bool {
+    let Err(missing) = adapter() else { return true };
+    assert!(std::env::var_os("WRIGGLE_REQUIRE_GRAPHICS").is_none_or(|asked| asked != "1"), "{missing}");
+    eprintln!("skipped what is drawn: {missing}");
+    false
+}
+
 #[test]
 fn the_garden_shows_what_is_in_it_and_the_worm_moves() {
-    if let Err(missing) = adapter() {
-        assert!(std::env::var_os("WRIGGLE_REQUIRE_GRAPHICS").is_none_or(|asked| asked != "1"), "{missing}");
-        eprintln!("skipped the picture of the garden: {missing}");
+    if !can_draw() {
         return;
     }
     let mut shot = garden().expect("there is an adapter");
@@ -159,4 +165,27 @@ fn the_garden_shows_what_is_in_it_and_the_worm_moves() {
     let (moved, due) = (found[1].x - found[0].x, middle(&after).x - middle(&before).x);
     assert!(due > 5.0, "the worm was to move in this time: {due} pixels");
     assert!((moved - due).abs() < 1.0 + 0.15 * due, "the worm moved {moved} pixels and not {due}");
+}
+
+/// Mesa's software renderer compiles a shader again at every draw for a uniform that decides a branch, and keeps all of them.
+#[test]
+fn frames_take_no_memory_that_they_do_not_give_back() {
+    // Megabytes, where the system tells.
+    let resident = || {
+        let pages = std::fs::read_to_string("/proc/self/statm").ok()?.split_whitespace().nth(1)?.parse::<u32>().ok()?;
+        Some(f64::from(pages) * 4096.0 / 1e6)
+    };
+    if !can_draw() || resident().is_none() {
+        return;
+    }
+    let mut shot = garden().expect("there is an adapter");
+    for _ in 0..5 {
+        shot.picture().expect("the renderer gives a picture");
+    }
+    let before = resident().unwrap();
+    for _ in 0..20 {
+        shot.picture().expect("the renderer gives a picture");
+    }
+    let grown = resident().unwrap() - before;
+    assert!(grown < 60.0, "20 frames took {grown:.0} MB");
 }

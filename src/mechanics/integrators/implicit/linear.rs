@@ -14,7 +14,7 @@ use crate::mechanics::{Model, State, forces::direction, friction::Frame};
 use super::{Diverged, Scheme, dot, project, stuck_masses};
 
 /// Bodies of more unknowns than this are solved by conjugate gradients.
-const MOST_FACTORISED: usize = 200;
+const MOST_FACTORISED: usize = 48;
 
 /// The matrix M + dt·(b·C + a·dt·K).
 #[derive(Clone, Debug)]
