@@ -1,6 +1,7 @@
 //! The laboratory: references, work-precision runs, stability limits and their charts.
 
 mod cache;
+mod choose;
 mod error;
 mod hash;
 mod machine;
@@ -11,6 +12,7 @@ mod run;
 mod sweep;
 
 pub use cache::Cache;
+pub use choose::{Candidate, Choice, Search, cheapest, choose, frontier};
 pub use error::LabError;
 pub use problem::{Problem, ProblemBody};
 pub use record::{Errors, Point, Setting, WorkPrecision};
