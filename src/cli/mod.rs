@@ -5,8 +5,9 @@ use std::{io, process::ExitCode};
 use clap::{Parser, Subcommand};
 use thiserror::Error;
 
-use crate::{creatures::FileError, scenes::parameters::ParameterError};
+use crate::{creatures::FileError, lab::LabError, scenes::parameters::ParameterError};
 
+mod choose;
 mod headless;
 mod list;
 mod play;
@@ -40,6 +41,8 @@ enum Command {
     Shot(shot::ShotArguments),
     /// Run a scene or a creature without drawing it
     Run(run::RunArguments),
+    /// Find the cheapest method and step whose error a scene can afford
+    Choose(choose::ChooseArguments),
 }
 
 /// How a command ended.
@@ -60,6 +63,9 @@ pub enum CliError {
     /// A parameter cannot be set.
     #[error("--set: {0}")]
     Parameter(#[from] ParameterError),
+    /// A scene cannot be measured.
+    #[error(transparent)]
+    Lab(#[from] LabError),
     /// Flags contradict the scene or each other.
     #[error("{0}")]
     Usage(String),
@@ -93,6 +99,7 @@ pub fn main() -> ExitCode {
         #[cfg(feature = "window")]
         Some(Command::Shot(arguments)) => shot::shot(&arguments),
         Some(Command::Run(arguments)) => run::run(&arguments),
+        Some(Command::Choose(arguments)) => choose::choose(&arguments),
     };
     match outcome {
         Ok(Outcome::Done) => ExitCode::SUCCESS,

@@ -9,6 +9,7 @@ mod exact_worm;
 mod files;
 mod friction;
 mod garden_worm;
+mod lab;
 mod laws;
 mod methods;
 #[cfg(feature = "window")]

@@ -1,0 +1,466 @@
+//! The laboratory: references, runs, sweeps, and what is chosen from them.
+
+use std::fs;
+
+use bevy::math::DVec3;
+use wriggle::{
+    body::{Gravity, Muscle, Muscles, Particle, ParticleId, Particles, SpineFriction, Spring, SpringId, Springs, Wave},
+    lab::{
+        Cache, Candidate, Problem, ProblemBody, Reference, Search, Setting, SweepOptions, cheapest, choose, frontier,
+        measure, work_precision,
+    },
+    mechanics::integrators::{Method, StickRule},
+    scenes,
+};
+
+use crate::support::{Body, Worm};
+
+const SETTING: Setting = Setting { method: Method::SemiImplicitEuler, stick: StickRule::InStages, dt: 0.01 };
+
+fn worm(body: Body) -> Problem {
+    let body = ProblemBody {
+        name: "worm".into(),
+        particles: body.particles,
+        springs: body.springs,
+        muscles: Some(body.muscles),
+        friction: Some(body.friction),
+        gravity: None,
+        ground: None,
+        mass_damping: None,
+    };
+    Problem::new("worm", vec![body], SETTING)
+}
+
+/// Two masses of 1 and 3 joined by a spring that is stretched by `stretch` at the start, on the x axis.
+fn oscillator(stiffness: f64, damping: f64, stretch: f64) -> Problem {
+    let at = |x: f64, mass| Particle { mass, ..Particle::at(DVec3::X * x) };
+    let particles = Particles::new([at(0.0, 1.0), at(1.0 + stretch, 3.0)]).unwrap();
+    let spring = Spring { ends: [ParticleId(0), ParticleId(1)], stiffness, damping, rest_length: 1.0 };
+    let springs = Springs::new([spring], &particles).unwrap();
+    Problem::new("oscillator", vec![loose(particles, springs)], SETTING)
+}
+
+#[test]
+fn the_reference_of_the_exact_worm_is_the_known_one() {
+    let problem = worm(Worm::EXACT.body());
+    assert_eq!((problem.duration, problem.times().len()), (20.0, 1000));
+    assert!((problem.spacing() - 0.02).abs() < 1e-15);
+    let reference = Reference::solve(&problem).unwrap();
+    assert!(reference.error() < 1e-12, "{:e} from what confirms it", reference.error());
+    let last: Vec<_> = reference.positions(0, 999).iter().map(|x| x.x).collect();
+    let known = [3.058918927290, 3.994998746503, 5.085548685141];
+    assert!(last.iter().zip(known).all(|(x, known)| (x - known).abs() < 1e-11), "{last:?}");
+    let speeds: Vec<_> = reference.last_velocities(0).iter().map(|v| v.x).collect();
+    let known = [0.232059061039, 0.202115095212, 0.063038244008];
+    assert!(speeds.iter().zip(known).all(|(v, known)| (v - known).abs() < 1e-11), "{speeds:?}");
+    let travelled = last.iter().sum::<f64>() / 3.0 - 1.0;
+    assert!((travelled - 3.046488786311).abs() < 1e-11, "{travelled}");
+    let events = reference.events();
+    assert_eq!(events.len(), 26, "{events:?}");
+    let first = [(2, true, 0.368158542829), (0, true, 0.835621599543), (1, false, 1.008115772431)];
+    for (event, (particle, slides, time)) in events.iter().zip(first) {
+        assert_eq!((event.particle, event.slides), (ParticleId(particle), slides), "{event:?}");
+        assert!((event.time - time).abs() < 1e-11, "{event:?}, known at {time}");
+    }
+    let cycles = [0.149138, 0.285996, 0.314267, 0.321484, 0.325558, 0.327983, 0.329459, 0.330370, 0.330938, 0.331296];
+    let center = |cycle: usize| match cycle {
+        0 => 1.0,
+        _ => reference.positions(0, 100 * cycle - 1).iter().map(|x| x.x).sum::<f64>() / 3.0,
+    };
+    for (cycle, known) in cycles.into_iter().enumerate() {
+        let way = center(cycle + 1) - center(cycle);
+        assert!((way - known).abs() < 1e-6, "cycle {cycle}: {way}, known {known}");
+    }
+}
+
+#[test]
+fn the_reference_of_an_oscillator_is_its_closed_form() {
+    // d = stretch·e^(−γt/2)·(cos νt + γ/2ν·sin νt) with κ = k(1/m₁ + 1/m₂), γ = D(1/m₁ + 1/m₂), ν² = κ − γ²/4.
+    for (stiffness, damping) in [(2.0, 0.0), (2.0, 0.3), (40.0, 0.5)] {
+        let problem = oscillator(stiffness, damping, 0.2);
+        let reference = Reference::solve(&problem).unwrap();
+        assert!(reference.error() < 1e-12 && reference.events().is_empty());
+        let (kappa, gamma) = (stiffness * 4.0 / 3.0, damping * 4.0 / 3.0);
+        let nu = f64::sqrt(kappa - 0.25 * gamma * gamma);
+        for (sample, t) in problem.times().into_iter().enumerate() {
+            let wave = libm::cos(nu * t) + gamma / (2.0 * nu) * libm::sin(nu * t);
+            let length = 1.0 + 0.2 * libm::exp(-0.5 * gamma * t) * wave;
+            // The centre of mass stays where it is, a fourth of the length before the heavier mass.
+            let exact = [0.75 * 1.2 - 0.75 * length, 0.75 * 1.2 + 0.25 * length];
+            for (x, exact) in reference.positions(0, sample).iter().zip(exact) {
+                assert!((x.x - exact).abs() < 1e-11, "k {stiffness}, D {damping}, t {t}: {} is not {exact}", x.x);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_turned_worm_has_the_reference_of_the_straight_one() {
+    // Turned about y, it needs all three dimensions and its spine's direction; the garden's worm has a ramp and drag as well.
+    for worm_of in [Worm::EXACT, Worm::GARDEN] {
+        let turn = 0.7;
+        let solve = |body| Reference::solve(&Problem { duration: 10.0, ..worm(body) }).unwrap();
+        let straight = solve(worm_of.body());
+        let turned = solve(worm_of.body().moved(DVec3::new(2.0, 0.0, -1.0), turn));
+        assert!(straight.error() < 1e-12 && turned.error() < 1e-12);
+        assert_eq!(straight.events().len(), turned.events().len());
+        let rotation = bevy::math::DQuat::from_rotation_y(turn);
+        for sample in (0..1000).step_by(37) {
+            for (a, b) in straight.positions(0, sample).iter().zip(turned.positions(0, sample)) {
+                let moved = rotation * *a + DVec3::new(2.0, 0.0, -1.0);
+                assert!(moved.distance(*b) < 1e-11, "{worm_of:?} at sample {sample}: {moved} is not {b}");
+            }
+        }
+    }
+}
+
+/// A body that is no worm.
+fn loose(particles: Particles, springs: Springs) -> ProblemBody {
+    ProblemBody {
+        name: "body".into(),
+        particles,
+        springs,
+        muscles: None,
+        friction: None,
+        gravity: None,
+        ground: None,
+        mass_damping: None,
+    }
+}
+
+#[test]
+fn the_reference_of_a_square_wave_switches_when_it_does() {
+    // Half a period of 1 long, the rest length is 1.2, then 0.8, and so on: in each, x'' = −κ(x − L) − γx' from where the last ended.
+    let (stiffness, damping, amplitude) = (5.0, 0.4, 0.2);
+    let mut problem = oscillator(stiffness, damping, 0.0);
+    let muscle = Muscle { spring: SpringId(0), wave: Wave::Square, amplitude, period: 1.0, phase: 0.0, ramp: 0.0 };
+    let body = &mut problem.bodies[0];
+    body.muscles = Some(Muscles::new([muscle], &body.springs).unwrap());
+    let problem = Problem::new("square", problem.bodies, SETTING);
+    assert_eq!(problem.duration, 10.0);
+    let reference = Reference::solve(&problem).unwrap();
+    assert!(reference.error() < 1e-12, "{:e}", reference.error());
+    let (kappa, gamma) = (stiffness * 4.0 / 3.0, damping * 4.0 / 3.0);
+    let nu = f64::sqrt(kappa - 0.25 * gamma * gamma);
+    let after = |(x, v): (f64, f64), rest: f64, t: f64| {
+        let (d, c, s, e) = (x - rest, libm::cos(nu * t), libm::sin(nu * t), libm::exp(-0.5 * gamma * t));
+        (rest + e * (d * c + (v + 0.5 * gamma * d) / nu * s), e * (v * c - (0.5 * gamma * v + kappa * d) / nu * s))
+    };
+    let (mut state, mut half) = ((1.0, 0.0), 0);
+    for (sample, t) in problem.times().into_iter().enumerate() {
+        let rest = |half: i32| if half % 2 == 0 { 1.2 } else { 0.8 };
+        while t > 0.5 * f64::from(half + 1) {
+            (state, half) = (after(state, rest(half), 0.5), half + 1);
+        }
+        let exact = after(state, rest(half), t - 0.5 * f64::from(half)).0;
+        let at = reference.positions(0, sample);
+        let length = at[1].x - at[0].x;
+        assert!((length - exact).abs() < 1e-10, "at {t}: {length} is not {exact}");
+    }
+}
+
+#[test]
+fn the_reference_of_a_swinging_mass_keeps_its_energy() {
+    let pin = Particle { pinned: true, ..Particle::at(DVec3::Y) };
+    let particles = Particles::new([pin, Particle::at(DVec3::new(0.8, 0.9, 0.3))]).unwrap();
+    let spring = Spring { ends: [ParticleId(0), ParticleId(1)], stiffness: 60.0, damping: 0.0, rest_length: 0.9 };
+    let springs = Springs::new([spring], &particles).unwrap();
+    let body = ProblemBody { gravity: Some(Gravity::new(9.81).unwrap()), ..loose(particles, springs) };
+    let problem = Problem::new("swing", vec![body], SETTING);
+    let reference = Reference::solve(&problem).unwrap();
+    assert!(reference.error() < 1e-9, "{:e}", reference.error());
+    let energy = |x: DVec3, v: DVec3| {
+        let stretch = x.distance(DVec3::Y) - 0.9;
+        0.5 * v.length_squared() + 9.81 * x.y + 30.0 * stretch * stretch
+    };
+    let start = energy(DVec3::new(0.8, 0.9, 0.3), DVec3::ZERO);
+    let end = energy(reference.positions(0, 999)[1], reference.last_velocities(0)[1]);
+    assert!((end - start).abs() < 1e-9, "{start} has become {end}");
+    assert_eq!(reference.positions(0, 999)[0], DVec3::Y);
+}
+
+#[test]
+fn runs_of_a_bent_crawler_come_to_its_reference() {
+    // Its spine turns while masses are held, grip and drag act, and a cut wave has kinks: all that a straight worm does not show.
+    let at = [DVec3::ZERO, DVec3::new(1.0, 0.0, 0.2), DVec3::new(1.9, 0.0, -0.3), DVec3::new(2.9, 0.0, 0.1)];
+    let particles = Particles::new(at.map(Particle::at)).unwrap();
+    let spring = |[a, b]: [u32; 2]| Spring {
+        ends: [ParticleId(a), ParticleId(b)],
+        stiffness: 3.0,
+        damping: 0.6,
+        rest_length: at[a as usize].distance(at[b as usize]),
+    };
+    let springs = Springs::new([[0, 1], [1, 2], [2, 3], [0, 2], [1, 3]].map(spring), &particles).unwrap();
+    let muscle = |i: u32, amplitude, phase| Muscle {
+        spring: SpringId(i),
+        wave: Wave::Sine,
+        amplitude,
+        period: 2.0,
+        phase,
+        ramp: 0.75,
+    };
+    let muscles = Muscles::new([muscle(0, 0.9, 0.1), muscle(2, 0.3, 0.35), muscle(3, 0.2, 0.6)], &springs).unwrap();
+    let friction = SpineFriction::new((0..4).map(ParticleId), &particles).unwrap();
+    let friction = friction.with_drag(0.4).unwrap().with_grip(2.0).unwrap();
+    let body = ProblemBody { muscles: Some(muscles), friction: Some(friction), ..loose(particles, springs) };
+    let mut problem = Problem::new("bent", vec![body], SETTING);
+    problem.duration = 8.0;
+    let reference = Reference::solve(&problem).unwrap();
+    assert!(reference.error() < 1e-11 && reference.events().len() > 10, "{:e}", reference.error());
+    let error = |dt| {
+        let setting = Setting { method: Method::RungeKutta4, stick: StickRule::InStages, dt };
+        measure(&problem, &reference, setting, 1).errors.unwrap().largest
+    };
+    let errors = [0.01, 0.005, 0.0025, 0.00125].map(error);
+    assert!(errors[3] < 2e-4 && errors.windows(2).all(|pair| pair[1] < 0.6 * pair[0]), "{errors:?}");
+}
+
+#[test]
+fn drag_without_a_ratchet_acts_on_forward_sliding_alone() {
+    // A mass on a spring of 1 to a pinned one, drag 0.3: x'' = −x − 0.3·max(x', 0), damped on every second half swing. Each swing forward takes
+    // e^(−0.15·π/ν) of the amplitude with ν² = 1 − 0.15², each swing back nothing.
+    let pin = Particle { pinned: true, ..Particle::at(DVec3::ZERO) };
+    let particles = Particles::new([pin, Particle::at(DVec3::X * 2.5)]).unwrap();
+    let spring = Spring { ends: [ParticleId(0), ParticleId(1)], stiffness: 1.0, damping: 0.0, rest_length: 2.0 };
+    let springs = Springs::new([spring], &particles).unwrap();
+    let friction = SpineFriction::new((0..2).map(ParticleId), &particles).unwrap().with_ratchet(false);
+    let body = ProblemBody { friction: Some(friction.with_drag(0.3).unwrap()), ..loose(particles, springs) };
+    let mut problem = Problem::new("half damped", vec![body], SETTING);
+    let nu = f64::sqrt(1.0 - 0.15 * 0.15);
+    let (back, forward) = (core::f64::consts::PI, core::f64::consts::PI / nu);
+    problem.duration = 2.0 * (back + forward);
+    let reference = Reference::solve(&problem).unwrap();
+    assert!(reference.error() < 1e-12, "{:e}", reference.error());
+    let exact = 2.0 + 0.5 * libm::exp(-0.15 * 2.0 * forward);
+    let end = reference.positions(0, 999)[1].x;
+    assert!((end - exact).abs() < 1e-11, "{end} is not {exact}");
+}
+
+#[test]
+fn methods_have_their_order_against_the_reference() {
+    for (method, order, damping, steps) in [
+        (Method::ExplicitEuler, 1.0, 0.3, [0.002, 0.001, 0.0005, 0.00025]),
+        (Method::SemiImplicitEuler, 1.0, 0.3, [0.002, 0.001, 0.0005, 0.00025]),
+        (Method::SemiImplicitEuler, 1.0, 0.0, [0.002, 0.001, 0.0005, 0.00025]),
+        (Method::StormerVerlet, 2.0, 0.0, [0.05, 0.025, 0.0125, 0.00625]),
+        (Method::RungeKutta2, 2.0, 0.3, [0.02, 0.01, 0.005, 0.0025]),
+        (Method::RungeKutta2, 2.0, 0.0, [0.02, 0.01, 0.005, 0.0025]),
+        (Method::RungeKutta4, 4.0, 0.3, [0.1, 0.05, 0.025, 0.0125]),
+        (Method::RungeKutta4, 4.0, 0.0, [0.1, 0.05, 0.025, 0.0125]),
+    ] {
+        let problem = Problem { duration: 5.0, ..oscillator(2.0, damping, 0.2) };
+        let reference = Reference::solve(&problem).unwrap();
+        let errors = steps.map(|dt| {
+            let setting = Setting { method, stick: StickRule::InStages, dt };
+            measure(&problem, &reference, setting, 1).errors.unwrap().largest
+        });
+        for pair in errors.windows(2) {
+            let observed = libm::log2(pair[0] / pair[1]);
+            assert!((observed - order).abs() < 0.1, "{method:?}, D {damping}: order {observed} in {errors:?}");
+        }
+    }
+}
+
+#[test]
+fn a_step_that_meets_no_shared_time_is_compared_as_exactly() {
+    let problem = oscillator(2.0, 0.3, 0.2);
+    let reference = Reference::solve(&problem).unwrap();
+    let error = |dt| {
+        let setting = Setting { method: Method::RungeKutta4, stick: StickRule::InStages, dt };
+        measure(&problem, &reference, setting, 1).errors.unwrap().largest
+    };
+    let (even, odd) = (error(0.1), error(0.0997));
+    assert!((odd / even - 1.0).abs() < 0.1, "{even} at 0.1, {odd} at 0.0997");
+}
+
+#[test]
+fn a_run_that_blows_up_is_a_point_without_errors() {
+    let problem = worm(Worm::EXACT.body());
+    let reference = Reference::solve(&problem).unwrap();
+    let limit = problem.stability_limit(Method::SemiImplicitEuler, StickRule::InStages);
+    let run = |dt| measure(&problem, &reference, Setting { dt, ..SETTING }, 2);
+    let (well, blown) = (run(0.5 * limit), run(4.0 * limit));
+    assert!(well.errors.is_some() && blown.errors.is_none(), "{well:?} {blown:?}");
+    assert_eq!(well.steps, (20.0 / (0.5 * limit)).ceil() as u64);
+    assert_eq!(well.evaluations, well.steps);
+    assert!(0.0 < well.seconds && well.seconds <= well.median_seconds);
+    // The known errors of the document's method: 5e-3 or so a unit of dt.
+    let known = run(0.0005).errors.unwrap();
+    assert!((known.largest - 1.03e-3).abs() < 2e-4 && (known.distance - 1.0217e-3).abs() < 1e-6, "{known:?}");
+    assert!(known.rms < known.largest);
+}
+
+#[test]
+fn a_reference_is_kept_and_a_damaged_file_is_computed_again() {
+    let folder = tempfile::tempdir().unwrap();
+    // What does not exist yet is made.
+    let cache = Cache::at(folder.path().join("a/b"));
+    let problem = Problem { duration: 2.0, ..worm(Worm::EXACT.body()) };
+    let file = cache.file(&problem).unwrap();
+    let computed = cache.reference(&problem).unwrap();
+    let good = fs::read(&file).unwrap();
+    assert_eq!(cache.reference(&problem).unwrap(), computed);
+    // Whatever is wrong with the file: the same reference comes back, and the file is good again.
+    let mut flipped = good.clone();
+    flipped[good.len() / 2] ^= 1;
+    let mut other_version = good.clone();
+    other_version[18] = b'0';
+    for damaged in [flipped, other_version, good[..good.len() - 5].to_vec(), good[..20].to_vec(), Vec::new()] {
+        fs::write(&file, &damaged).unwrap();
+        assert_eq!(cache.reference(&problem).unwrap(), computed);
+        assert_eq!(fs::read(&file).unwrap(), good);
+    }
+    // The file is what is read: a reference with a right checksum is believed.
+    let other = Problem { duration: 2.0, ..worm(Worm { stiffness: 1.6, ..Worm::EXACT }.body()) };
+    assert_ne!(cache.file(&other), Some(file.clone()));
+    fs::write(cache.file(&other).unwrap(), &good).unwrap();
+    assert_ne!(cache.reference(&other).unwrap(), computed, "a file of another problem was believed");
+    // A folder that cannot be is no error.
+    fs::write(folder.path().join("plain"), "no folder").unwrap();
+    assert_eq!(Cache::at(folder.path().join("plain")).reference(&problem).unwrap(), computed);
+}
+
+#[test]
+fn the_hash_goes_by_the_physics_alone() {
+    let load = |change: &dyn Fn(&mut scenes::LoadedScene)| {
+        let mut scene = scenes::load("garden").unwrap();
+        change(&mut scene);
+        Problem::of(&scene).unwrap().hash()
+    };
+    let plain = load(&|_| {});
+    let same = load(&|scene| {
+        scene.file.title = "another".into();
+        scene.file.camera = scenes::Camera::default();
+        scene.file.method = Method::RungeKutta4;
+        scene.file.clock.step = scenes::StepSize::Dt(0.01);
+    });
+    assert_eq!(plain, same);
+    let stiffer = load(&|scene| scene.file.set = [("worm.springs.stiffness".into(), 1.6)].into());
+    let moved = load(&|scene| scene.file.creatures[0].at = (1.0, 0.0, 0.0));
+    assert!(plain != stiffer && plain != moved && stiffer != moved);
+}
+
+#[test]
+fn a_scene_on_the_ground_has_no_reference_and_says_so() {
+    let mut scene = scenes::load("glide").unwrap();
+    scene.file.ground = Some(wriggle::body::Ground::Flat);
+    let error = Reference::solve(&Problem::of(&scene).unwrap()).unwrap_err();
+    assert!(error.to_string().contains("glide") && error.to_string().contains("ground"), "{error}");
+}
+
+#[test]
+fn a_pixel_of_the_garden_is_the_known_length() {
+    let problem = Problem::of(&scenes::load("garden").unwrap()).unwrap();
+    // 2·16.5·tan 21°/1080.
+    assert!((problem.budget - 0.011729).abs() < 1e-6, "{}", problem.budget);
+    assert_eq!((problem.duration, problem.time_scale), (60.0, 3.0));
+}
+
+#[test]
+fn a_sweep_has_eight_steps_of_every_method_and_both_settings() {
+    let options = SweepOptions { quick: true, cache: Cache::none() };
+    let mut said = Vec::new();
+    let scene = scenes::load("glide").unwrap();
+    let chart =
+        work_precision(&scene, &options, &mut |done, total, what| said.push((done, total, what.to_owned()))).unwrap();
+    assert_eq!((chart.scene.as_str(), chart.duration, chart.real_time), ("glide", 20.0, 20.0));
+    for method in Method::ALL {
+        let steps: Vec<_> = chart.points.iter().filter(|point| point.setting.method == method).collect();
+        assert!(steps.len() >= 8, "{method:?} has {} points", steps.len());
+        for pair in steps.windows(2).filter(|pair| pair[0].setting.stick == pair[1].setting.stick) {
+            assert!(pair[0].setting.dt > pair[1].setting.dt && pair[0].steps < pair[1].steps);
+        }
+        let has_variant = steps.iter().any(|point| point.setting.stick == StickRule::EndOfStep);
+        assert_eq!(has_variant, method == Method::RungeKutta4 || has_variant && method != Method::SemiImplicitEuler);
+    }
+    let own = chart.points.iter().filter(|point| point.setting == chart.setting).count();
+    assert_eq!((own, chart.setting.dt), (1, 0.0005));
+    assert!(chart.points.iter().any(|point| point.errors.is_none()), "nothing blew up");
+    assert!(said.last().is_some_and(|last| last.0 == last.1 && last.0 == chart.points.len()));
+}
+
+/// A candidate of a made-up study, told apart from others by its step.
+fn candidate(dt: f64, error: Option<f64>, cost: f64) -> Candidate {
+    Candidate { setting: Setting { dt, ..SETTING }, error, cost }
+}
+
+#[test]
+fn the_cheapest_candidate_within_the_budget_is_chosen() {
+    let cheap_but_bad = candidate(8.0, Some(1.1), 10.0);
+    let cheap_but_blown = candidate(7.0, None, 5.0);
+    let dear = candidate(1.0, Some(0.01), 100.0);
+    let good = candidate(4.0, Some(0.9), 20.0);
+    let as_cheap_and_better = candidate(3.0, Some(0.5), 20.0);
+    let beaten = candidate(2.0, Some(0.6), 30.0);
+    let all = [cheap_but_bad, dear, good, cheap_but_blown, beaten, as_cheap_and_better];
+    assert_eq!(cheapest(&all, 1.0), Some(as_cheap_and_better));
+    assert_eq!(cheapest(&all, 0.1), Some(dear));
+    assert_eq!(cheapest(&all, 2.0), Some(cheap_but_bad));
+    assert_eq!(cheapest(&all, 1e-3), None);
+    assert_eq!(frontier(&all), [cheap_but_bad, as_cheap_and_better, dear]);
+}
+
+#[test]
+fn the_choice_for_the_exact_worm_keeps_its_promises() {
+    let mut problem = worm(Worm::EXACT.body());
+    (problem.budget, problem.duration) = (1e-2, 6.0);
+    let reference = Reference::solve(&problem).unwrap();
+    let mut heard = Vec::new();
+    let found =
+        choose(&problem, &reference, Search::Cheapest, &mut |done, total, _| heard.push((done, total))).unwrap();
+    let Candidate { setting, error, cost } = found.choice;
+    assert!(error.unwrap() <= 1e-2 && cost > 0.0, "{found:?}");
+    assert!(setting.dt <= 0.5 * problem.stability_limit(setting.method, setting.stick));
+    for part in [1.0, 0.9, 0.8] {
+        let errors = measure(&problem, &reference, Setting { dt: part * setting.dt, ..setting }, 1).errors.unwrap();
+        assert!(errors.largest <= error.unwrap());
+    }
+    // An order of one: the step of its method that is good enough is known, and dearer.
+    assert!(found.document.error.unwrap() < 1.2e-3 && (found.document.cost - 12_000.0).abs() < 1.0, "{found:?}");
+    assert!(cost < 600.0, "{found:?}");
+    assert_eq!(heard.last(), Some(&(Method::ALL.len(), Method::ALL.len())));
+    // What nothing can keep is said.
+    (problem.budget, problem.duration) = (0.0, 0.1);
+    let reference = Reference::solve(&problem).unwrap();
+    let error = choose(&problem, &reference, Search::Cheapest, &mut |_, _, _| {}).unwrap_err();
+    assert!(error.to_string().contains("worm: no method keeps the error within"), "{error}");
+}
+
+#[test]
+fn the_command_prints_its_choice_and_keeps_the_reference() {
+    let folder = tempfile::tempdir().unwrap();
+    // A worm so quick that all of its ten cycles are a few hundred steps.
+    let text = r#"Creature(version: 1,
+      body: Raw(
+        particles: [(position: (0, 0, 0), mass: 1), (position: (1, 0, 0), mass: 1)],
+        springs: [(ends: (0, 1), stiffness: 90000, damping: 180, rest_length: 1,
+                   muscle: (wave: Sine, amplitude: 0.25, period: 0.005, phase: 0, ramp: 0))],
+        spine: [0, 1]),
+      friction: (ratchet: true, drag: 1, grip: 0))"#;
+    fs::write(folder.path().join("quick.creature.ron"), text).unwrap();
+    let wriggle = |arguments: &[&str]| {
+        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_wriggle"));
+        command.args(arguments).current_dir(folder.path()).env("WRIGGLE_CACHE", folder.path().join("kept"));
+        command.output().unwrap()
+    };
+    let output = wriggle(&["choose", "quick.creature.ron", "--json"]);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    let found: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let budget = found["budget"].as_f64().unwrap();
+    let chosen = &found["choice"];
+    assert!(chosen["error"].as_f64().unwrap() <= budget);
+    assert!(found["frontier"].as_array().unwrap().contains(chosen));
+    let costs: Vec<_> = found["frontier"].as_array().unwrap().iter().map(|row| row["cost"].as_f64().unwrap()).collect();
+    assert!(costs.is_sorted() && costs.len() > 3, "{costs:?}");
+    assert_eq!(found["document"]["setting"]["dt"], 0.0005);
+    assert_eq!(fs::read_dir(folder.path().join("kept")).unwrap().count(), 1);
+    let output = wriggle(&["choose", "quick.creature.ron"]);
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert!(
+        text.contains("cheapest within the budget") && text.contains(chosen["setting"]["method"].as_str().unwrap())
+    );
+    // A scene that is not there is the same error as everywhere.
+    let said = |command| String::from_utf8(wriggle(&[command, "gardn"]).stderr).unwrap();
+    assert_eq!(wriggle(&["choose", "gardn"]).status.code(), Some(2));
+    assert_eq!(said("choose"), said("run"));
+}
