@@ -17,6 +17,7 @@ pub use crate::creatures::FileError;
 pub use file::{Budget, Camera, DOCUMENT_DT, Placement, Props, SceneClock, SceneFile, StepSize};
 pub use load::{LoadedScene, load, load_creature, read_scene};
 pub use save::save;
+pub(crate) use save::write;
 pub use spawn::{CurrentScene, SceneBodies, SceneMember, open};
 pub use switch::{SceneChange, SceneProblem, ScenesPlugin};
 #[cfg(feature = "window")]
