@@ -25,7 +25,8 @@ pub(super) fn room(caption: &[String]) -> Room {
 
 /// What stands below a chart, in lines.
 pub(super) fn caption(chart: &WorkPrecision) -> Vec<String> {
-    let width = Picture::WIDTH - 2.0 * MARGIN;
+    // An SVG may be shown in a wider font than the bundled one.
+    let width = 0.87 * (Picture::WIDTH - 2.0 * MARGIN);
     let sentences = [
         format!(
             "Friction acts in the stages of a method unless its name says “at end”. Arithmetic in f64. Real time, in which the app \
