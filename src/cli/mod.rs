@@ -5,8 +5,13 @@ use std::{io, process::ExitCode};
 use clap::{Parser, Subcommand};
 use thiserror::Error;
 
-use crate::{creatures::FileError, scenes::parameters::ParameterError};
+use crate::{
+    creatures::FileError,
+    lab::{GalleryError, LabError},
+    scenes::parameters::ParameterError,
+};
 
+mod chart;
 mod headless;
 mod list;
 mod play;
@@ -40,6 +45,8 @@ enum Command {
     Shot(shot::ShotArguments),
     /// Run a scene or a creature without drawing it
     Run(run::RunArguments),
+    /// Measure what accuracy costs with every method, and draw it
+    Chart(chart::ChartArguments),
 }
 
 /// How a command ended.
@@ -60,6 +67,12 @@ pub enum CliError {
     /// A parameter cannot be set.
     #[error("--set: {0}")]
     Parameter(#[from] ParameterError),
+    /// A scene cannot be measured.
+    #[error(transparent)]
+    Lab(#[from] LabError),
+    /// Charts cannot be kept.
+    #[error(transparent)]
+    Gallery(#[from] GalleryError),
     /// Flags contradict the scene or each other.
     #[error("{0}")]
     Usage(String),
@@ -93,6 +106,7 @@ pub fn main() -> ExitCode {
         #[cfg(feature = "window")]
         Some(Command::Shot(arguments)) => shot::shot(&arguments),
         Some(Command::Run(arguments)) => run::run(&arguments),
+        Some(Command::Chart(arguments)) => chart::chart(&arguments),
     };
     match outcome {
         Ok(Outcome::Done) => ExitCode::SUCCESS,

@@ -9,9 +9,11 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use super::{
-    WorkPrecision,
+    Partial, WorkPrecision,
     chart::{self, ChartError},
-    csv, page,
+    csv,
+    machine::machine,
+    page,
 };
 use crate::scenes::write;
 
@@ -86,6 +88,18 @@ impl Gallery {
         (kept.problem == problem && kept.chart.scene == scene).then_some(kept.chart)
     }
 
+    /// Goes on with the sweep of a scene that was interrupted, or begins one.
+    ///
+    /// # Errors
+    /// If the file of its points cannot be written.
+    pub fn partial(&self, scene: &str, problem: &str) -> Result<Partial, GalleryError> {
+        Partial::open(self.part(scene), problem, machine())
+    }
+
+    fn part(&self, scene: &str) -> PathBuf {
+        self.file(scene, "part.jsonl")
+    }
+
     /// Keeps a chart as `NAME.csv`, `NAME.svg`, `NAME.png` and `NAME.json`. The last is written last: where it is, the chart is whole.
     ///
     /// # Errors
@@ -97,7 +111,14 @@ impl Gallery {
         let file = self.file(&chart.scene, "json");
         let json = serde_json::to_vec_pretty(&Kept { problem: problem.into(), chart })
             .map_err(|error| GalleryError::File { file: file.clone(), error: error.into() })?;
-        self.write(&file, &json)
+        self.write(&file, &json)?;
+        // What was left of an interrupted sweep is in the chart now.
+        match fs::remove_file(self.part(&chart.scene)) {
+            Err(error) if error.kind() != io::ErrorKind::NotFound => {
+                Err(GalleryError::File { file: self.part(&chart.scene), error })
+            }
+            _ => Ok(()),
+        }
     }
 
     /// Writes `index.html` with all charts of the folder, by name, and says where it is.

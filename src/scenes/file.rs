@@ -14,6 +14,9 @@ use crate::{
 /// The step of the document, "0.5 milliseconds", which it takes with semi-implicit Euler. The default of every scene.
 pub const DOCUMENT_DT: f64 = 0.0005;
 
+/// How high the camera's picture is, as an angle in degrees.
+pub const FIELD_OF_VIEW: f64 = 42.0;
+
 /// A scene: what `*.scene.ron` holds.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename = "Scene", deny_unknown_fields)]
@@ -52,6 +55,17 @@ pub struct SceneFile {
     /// Parameters that differ from those of its creatures, by path, such as `"worm.springs.stiffness": 2`. Left out: none.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub set: BTreeMap<String, f64>,
+}
+
+impl SceneFile {
+    /// The error that it can afford, in lengths: a pixel is one of 1080 rows of what its camera shows at the distance of its target.
+    pub fn budget_length(&self) -> f64 {
+        /// The height of the screen in pixels.
+        const HEIGHT: f64 = 1080.0;
+        let Camera::Orbit { distance, .. } = self.camera;
+        let Budget::Pixels(pixels) = self.budget;
+        pixels * 2.0 * distance * libm::tan(0.5 * FIELD_OF_VIEW.to_radians()) / HEIGHT
+    }
 }
 
 /// Reads nothing but the version of a scene file.

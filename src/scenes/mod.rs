@@ -14,7 +14,7 @@ mod switch;
 mod watch;
 
 pub use crate::creatures::FileError;
-pub use file::{Budget, Camera, DOCUMENT_DT, Placement, Props, SceneClock, SceneFile, StepSize};
+pub use file::{Budget, Camera, DOCUMENT_DT, FIELD_OF_VIEW, Placement, Props, SceneClock, SceneFile, StepSize};
 pub use load::{LoadedScene, load, load_creature, read_scene};
 pub use save::save;
 pub(crate) use save::write;

@@ -7,7 +7,7 @@ use super::{half::HalfResolution, help::typing, offscreen::OffscreenTarget, qual
 use crate::{
     creatures::Look,
     physics::Shown,
-    scenes::{Camera as Place, CurrentScene},
+    scenes::{Camera as Place, CurrentScene, FIELD_OF_VIEW},
 };
 
 /// Whether the pointer is used by a panel: while true, it does not move the camera. Written by whoever draws panels, before
@@ -56,7 +56,12 @@ fn spawn(quality: Res<Quality>, target: Option<Res<OffscreenTarget>>, mut comman
         Camera3d::default(),
         quality.msaa(),
         bevy::core_pipeline::tonemapping::Tonemapping::None,
-        Projection::from(PerspectiveProjection { fov: 42_f32.to_radians(), near: 0.1, far: 400.0, ..default() }),
+        Projection::from(PerspectiveProjection {
+            fov: (FIELD_OF_VIEW as f32).to_radians(),
+            near: 0.1,
+            far: 400.0,
+            ..default()
+        }),
         PanOrbitCamera {
             pitch_lower_limit: Some(0.03),
             pitch_upper_limit: Some(1.5),

@@ -10,6 +10,7 @@ mod exact_worm;
 mod files;
 mod friction;
 mod garden_worm;
+mod lab;
 mod laws;
 #[cfg(feature = "window")]
 mod panel;

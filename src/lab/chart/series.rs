@@ -104,8 +104,11 @@ impl Series {
             Some(point) => cost.of(point) * point.setting.dt / dt,
             None => {
                 let point = self.blown.first()?;
-                let steps = (point.steps as f64).max(1.0);
-                cost.of(point) / steps * duration / dt
+                let a_step = match (cost, self.method.about().evaluations) {
+                    (Cost::Evaluations, Some(evaluations)) => evaluations as f64,
+                    _ => cost.of(point) / (point.steps as f64).max(1.0),
+                };
+                a_step * duration / dt
             }
         };
         (whole.is_finite() && whole > 0.0).then_some(whole)

@@ -1,0 +1,139 @@
+//! References that were computed before, in files.
+//!
+//! A file holds the format's name and version, the problem's hash, the reference and a checksum over all of it. A file that is damaged, cut off or
+//! of another version counts as none: the reference is computed again and the file written anew.
+
+use std::{env, fs, io::Write, path::PathBuf};
+
+use bevy::math::DVec3;
+use directories::ProjectDirs;
+
+use crate::body::ParticleId;
+
+use super::{LabError, Problem, Reference, StickSlip, hash::Fnv};
+
+/// The beginning of every file. The number changes with the format and with what references are made of.
+const HEAD: &[u8] = b"wriggle reference 1\n";
+/// The folder that is used instead of the platform's.
+const VARIABLE: &str = "WRIGGLE_CACHE";
+
+/// Where references are kept.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Cache {
+    folder: Option<PathBuf>,
+}
+
+impl Cache {
+    /// The folder that the variable `WRIGGLE_CACHE` names, or else the platform's folder for what can be computed again.
+    pub fn of_platform() -> Self {
+        let named = env::var_os(VARIABLE).filter(|folder| !folder.is_empty()).map(PathBuf::from);
+        let folder = named.or_else(|| Some(ProjectDirs::from("", "", "wriggle")?.cache_dir().into()));
+        Self { folder }
+    }
+
+    /// A folder, which is made when there is something to keep.
+    pub fn at(folder: impl Into<PathBuf>) -> Self {
+        Self { folder: Some(folder.into()) }
+    }
+
+    /// Keeps nothing.
+    pub fn none() -> Self {
+        Self { folder: None }
+    }
+
+    /// The file that holds the reference of a problem, if anything is kept.
+    pub fn file(&self, problem: &Problem) -> Option<PathBuf> {
+        Some(self.folder.as_ref()?.join(format!("{:032x}.reference", problem.hash())))
+    }
+
+    /// The reference of a problem: the one that is kept, or else it is computed and kept. That it cannot be kept is no error.
+    ///
+    /// # Errors
+    /// As [`Reference::solve`].
+    pub fn reference(&self, problem: &Problem) -> Result<Reference, LabError> {
+        let file = self.file(problem);
+        let kept = file.as_ref().and_then(|file| fs::read(file).ok()).and_then(|bytes| read(problem, &bytes));
+        if let Some(reference) = kept {
+            return Ok(reference);
+        }
+        let reference = Reference::solve(problem)?;
+        if let Some(file) = file {
+            // Without it the reference is computed again: slower, and not wrong.
+            let _ = write(&file, &bytes(problem, &reference));
+        }
+        Ok(reference)
+    }
+}
+
+/// Writes a file beside its place and then moves it there, so that nobody ever reads half of it.
+fn write(file: &std::path::Path, bytes: &[u8]) -> std::io::Result<()> {
+    let folder = file.parent().unwrap_or(std::path::Path::new("."));
+    fs::create_dir_all(folder)?;
+    let mut temporary = tempfile::NamedTempFile::new_in(folder)?;
+    temporary.write_all(bytes)?;
+    temporary.persist(file)?;
+    Ok(())
+}
+
+fn bytes(problem: &Problem, reference: &Reference) -> Vec<u8> {
+    let mut bytes = HEAD.to_vec();
+    bytes.extend(problem.hash().to_le_bytes());
+    bytes.extend(reference.error.to_le_bytes());
+    bytes.extend((reference.events.len() as u64).to_le_bytes());
+    for event in &reference.events {
+        bytes.extend((event.body as u64).to_le_bytes());
+        bytes.extend(u64::from(event.particle.0).to_le_bytes());
+        bytes.extend(event.time.to_le_bytes());
+        bytes.extend(u64::from(event.slides).to_le_bytes());
+    }
+    for vector in reference.positions.iter().chain(&reference.velocities).flatten() {
+        bytes.extend(vector.to_array().into_iter().flat_map(f64::to_le_bytes));
+    }
+    bytes.extend(checksum(&bytes).to_le_bytes());
+    bytes
+}
+
+fn checksum(bytes: &[u8]) -> u128 {
+    let mut hash = Fnv::new();
+    hash.bytes(bytes);
+    hash.finish()
+}
+
+/// The reference in a file, unless something is wrong with it.
+fn read(problem: &Problem, bytes: &[u8]) -> Option<Reference> {
+    let (bytes, sum) = bytes.split_last_chunk::<16>()?;
+    (checksum(bytes) == u128::from_le_bytes(*sum)).then_some(())?;
+    let mut rest = bytes.strip_prefix(HEAD)?.strip_prefix(&problem.hash().to_le_bytes()[..])?;
+    let error = number(&mut rest)?;
+    let mut events = Vec::new();
+    for _ in 0..whole(&mut rest)? {
+        let body = whole(&mut rest)? as usize;
+        let particle = ParticleId(u32::try_from(whole(&mut rest)?).ok()?);
+        let (time, slides) = (number(&mut rest)?, whole(&mut rest)? != 0);
+        events.push(StickSlip { body, particle, time, slides });
+    }
+    let samples = problem.times().len();
+    let mut vectors = |count: usize| (0..count).map(|_| vector(&mut rest)).collect::<Option<Vec<_>>>();
+    let sizes = problem.bodies.iter().map(|body| body.particles.len());
+    let positions = sizes.clone().map(|size| vectors(samples * size)).collect::<Option<_>>()?;
+    let velocities = sizes.map(&mut vectors).collect::<Option<_>>()?;
+    rest.is_empty().then_some(Reference { positions, velocities, events, error })
+}
+
+fn word(rest: &mut &[u8]) -> Option<[u8; 8]> {
+    let (word, others) = rest.split_first_chunk()?;
+    *rest = others;
+    Some(*word)
+}
+
+fn number(rest: &mut &[u8]) -> Option<f64> {
+    word(rest).map(f64::from_le_bytes)
+}
+
+fn whole(rest: &mut &[u8]) -> Option<u64> {
+    word(rest).map(u64::from_le_bytes)
+}
+
+fn vector(rest: &mut &[u8]) -> Option<DVec3> {
+    Some(DVec3::new(number(rest)?, number(rest)?, number(rest)?))
+}

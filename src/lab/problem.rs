@@ -1,0 +1,204 @@
+//! What a scene asks of a method: its bodies and how long they are followed, without anything that is only drawn.
+
+use bevy::{ecs::prelude::*, prelude::Name};
+
+use crate::{
+    body::{Gravity, Ground, MassDamping, Muscles, Particles, SpineFriction, Springs},
+    mechanics::{
+        BodyParts,
+        integrators::{Method, StickRule},
+    },
+    physics::Clock,
+    scenes::{self, LoadedScene, SceneBodies},
+};
+
+use super::{LabError, Setting, hash::Fnv};
+
+/// How many gait cycles a problem lasts.
+const CYCLES: f64 = 10.0;
+/// How long a problem lasts where nothing has a cycle.
+const WITHOUT_MUSCLES: f64 = 20.0;
+/// How many shared times there are.
+const SAMPLES: usize = 1000;
+
+/// One body of a problem: its components, as they are at time 0.
+#[derive(Clone, Debug)]
+pub struct ProblemBody {
+    /// Its name in the scene.
+    pub name: String,
+    /// Its particles at the start.
+    pub particles: Particles,
+    /// Its springs.
+    pub springs: Springs,
+    /// Its muscles, if it has any.
+    pub muscles: Option<Muscles>,
+    /// Its friction, if it has any.
+    pub friction: Option<SpineFriction>,
+    /// Its gravity, if it has any.
+    pub gravity: Option<Gravity>,
+    /// The ground that it stands on, if any.
+    pub ground: Option<Ground>,
+    /// Its damping by what surrounds it, if any, as a rate: what is given for a step has the rate that it has at the scene's own step, so that the physics
+    /// does not change with the step.
+    pub mass_damping: Option<MassDamping>,
+}
+
+impl ProblemBody {
+    /// Borrows the body for mechanics.
+    pub fn parts(&self, method: Method, stick: StickRule) -> BodyParts<'_> {
+        BodyParts {
+            particles: &self.particles,
+            springs: &self.springs,
+            muscles: self.muscles.as_ref(),
+            friction: self.friction.as_ref(),
+            gravity: self.gravity,
+            ground: self.ground,
+            mass_damping: self.mass_damping,
+            method,
+            stick,
+        }
+    }
+
+    /// The largest stable step of a method, safe in every pose that the body may come into.
+    pub fn stability_limit(&self, method: Method, stick: StickRule) -> f64 {
+        self.parts(method, stick).stability_limit(true)
+    }
+
+    fn hash(&self, hash: &mut Fnv) {
+        let particles = &self.particles;
+        hash.whole(particles.len() as u64);
+        for columns in [particles.position_columns(), particles.velocity_columns()] {
+            columns.iter().for_each(|column| hash.numbers(column));
+        }
+        // What is pinned never moves, whatever its mass is.
+        for (&mass, &pinned) in particles.masses().iter().zip(particles.pinned()) {
+            hash.number(if pinned { f64::INFINITY } else { mass });
+        }
+        hash.whole(self.springs.len() as u64);
+        for spring in self.springs.iter() {
+            spring.ends.iter().for_each(|end| hash.whole(u64::from(end.0)));
+            hash.numbers(&[spring.stiffness, spring.damping, spring.rest_length]);
+        }
+        let muscles = self.muscles.iter().flat_map(|muscles| muscles.iter().zip(muscles.epochs()));
+        hash.whole(self.muscles.as_ref().map_or(0, Muscles::len) as u64);
+        for (muscle, epoch) in muscles {
+            hash.whole(u64::from(muscle.spring.0));
+            hash.whole(muscle.wave as u64);
+            hash.numbers(&[muscle.amplitude, muscle.period, muscle.phase, muscle.ramp, epoch.time, epoch.cycles]);
+        }
+        let spine = self.friction.as_ref().map_or(&[][..], SpineFriction::spine);
+        hash.whole(spine.len() as u64);
+        spine.iter().for_each(|particle| hash.whole(u64::from(particle.0)));
+        if let Some(friction) = &self.friction {
+            hash.whole(u64::from(friction.ratchet()));
+            hash.numbers(&[friction.drag(), friction.grip()]);
+        }
+        hash.number(self.gravity.map_or(0.0, Gravity::acceleration));
+        hash.whole(self.ground.map_or(0, |ground| 1 + ground as u64));
+        hash.number(self.mass_damping.map_or(0.0, |damping| damping.rate_at(1.0)));
+    }
+}
+
+/// A scene as a problem for methods of integration.
+#[derive(Clone, Debug)]
+pub struct Problem {
+    /// The scene's name.
+    pub name: String,
+    /// The scene's title.
+    pub title: String,
+    /// The bodies in the order of the scene.
+    pub bodies: Vec<ProblemBody>,
+    /// The scene's own method and step.
+    pub setting: Setting,
+    /// How much simulated time the app shows in a second.
+    pub time_scale: f64,
+    /// The error that the scene can afford, in lengths.
+    pub budget: f64,
+    /// The longest period of a muscle, or nothing where no muscle is.
+    pub period: Option<f64>,
+    /// How long it is followed: ten of the longest period, or 20 units of time where no muscle is.
+    pub duration: f64,
+}
+
+impl Problem {
+    /// The problem of a scene as its file has it, with the parameters that the file sets.
+    ///
+    /// # Errors
+    /// If a body cannot be built, which loading the scene has found out before.
+    pub fn of(scene: &LoadedScene) -> Result<Self, LabError> {
+        let mut world = World::new();
+        scenes::open(&mut world, scene.clone())?;
+        let clock = world.resource::<Clock>().clone();
+        let dt = clock.dt();
+        let entities = world.resource::<SceneBodies>().0.clone();
+        let bodies = entities.into_iter().filter_map(|entity| body(world.get_entity(entity).ok()?, dt)).collect();
+        let file = &scene.file;
+        let mut problem = Self {
+            name: scene.source.stem(),
+            title: file.title.clone(),
+            bodies,
+            setting: Setting { method: file.method, stick: file.stick, dt },
+            time_scale: clock.time_scale().unwrap_or(file.clock.time_scale),
+            budget: file.budget_length(),
+            period: None,
+            duration: 0.0,
+        };
+        problem.set_duration();
+        Ok(problem)
+    }
+
+    /// A problem of bodies that no scene has, with a budget of 1.
+    pub fn new(name: impl Into<String>, bodies: Vec<ProblemBody>, setting: Setting) -> Self {
+        let name = name.into();
+        let title = name.clone();
+        let mut problem =
+            Self { name, title, bodies, setting, time_scale: 1.0, budget: 1.0, period: None, duration: 0.0 };
+        problem.set_duration();
+        problem
+    }
+
+    fn set_duration(&mut self) {
+        let muscles = self.bodies.iter().filter_map(|body| body.muscles.as_ref()).flat_map(Muscles::iter);
+        self.period = muscles.map(|muscle| muscle.period).reduce(f64::max);
+        self.duration = self.period.map_or(WITHOUT_MUSCLES, |period| CYCLES * period);
+    }
+
+    /// The time between two shared times.
+    pub fn spacing(&self) -> f64 {
+        self.duration / SAMPLES as f64
+    }
+
+    /// The shared times, at which every run is compared with the reference: a thousand, evenly, the last at the end and none at the start.
+    pub fn times(&self) -> Vec<f64> {
+        (1..=SAMPLES).map(|i| self.duration * (i as f64 / SAMPLES as f64)).collect()
+    }
+
+    /// The largest step of a method that is stable for every body; infinite where none is unstable.
+    pub fn stability_limit(&self, method: Method, stick: StickRule) -> f64 {
+        self.bodies.iter().map(|body| body.stability_limit(method, stick)).fold(f64::INFINITY, f64::min)
+    }
+
+    /// A hash of the physics: of all that the exact motion depends on, and of nothing else.
+    pub fn hash(&self) -> u128 {
+        let mut hash = Fnv::new();
+        hash.number(self.duration);
+        hash.whole(SAMPLES as u64);
+        hash.whole(self.bodies.len() as u64);
+        self.bodies.iter().for_each(|body| body.hash(&mut hash));
+        hash.finish()
+    }
+}
+
+fn body(entity: EntityRef<'_>, dt: f64) -> Option<ProblemBody> {
+    Some(ProblemBody {
+        name: entity.get::<Name>().map_or("body", Name::as_str).to_owned(),
+        particles: entity.get::<Particles>()?.clone(),
+        springs: entity.get::<Springs>()?.clone(),
+        muscles: entity.get::<Muscles>().filter(|muscles| !muscles.is_empty()).cloned(),
+        friction: entity.get::<SpineFriction>().cloned(),
+        // Gravity of zero is none: it must not cost a body its axis.
+        gravity: entity.get::<Gravity>().copied().filter(|gravity| gravity.acceleration() > 0.0),
+        ground: entity.get::<Ground>().copied(),
+        mass_damping: entity.get::<MassDamping>().map(|damping| MassDamping::Rate(damping.rate_at(dt))),
+    })
+}

@@ -1,0 +1,316 @@
+//! Following a body through its events: smooth pieces, each up to the instant at which a mass starts or stops to slide, or to a kink of a muscle.
+
+use bevy::math::DVec3;
+
+use crate::{body::ParticleId, lab::ProblemBody};
+
+use super::{
+    flow::{Flow, Mode, Piece},
+    kinks::kinks,
+    schemes::Scheme,
+};
+
+/// A mass that starts or stops to slide.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StickSlip {
+    /// The body, counted from 0 in the order of the scene.
+    pub body: usize,
+    /// The mass.
+    pub particle: ParticleId,
+    /// When.
+    pub time: f64,
+    /// Whether it slides from there on.
+    pub slides: bool,
+}
+
+/// A body at the shared times.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Track {
+    /// Positions, time by time.
+    pub(super) positions: Vec<DVec3>,
+    /// Velocities at the last of the times.
+    pub(super) velocities: Vec<DVec3>,
+    pub(super) events: Vec<StickSlip>,
+}
+
+/// How finely a body is followed.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Grain {
+    /// Events are looked for at least this often.
+    pub(super) chunk: f64,
+    /// A speed that is nothing.
+    pub(super) speed: f64,
+    /// An acceleration that is nothing.
+    pub(super) push: f64,
+}
+
+/// Why a body cannot be followed any further.
+pub(super) struct Broken {
+    pub(super) time: f64,
+    pub(super) problem: String,
+}
+
+/// Follows one body through `times`, which ascend.
+pub(super) fn follow<const D: usize>(
+    body: &ProblemBody,
+    times: &[f64],
+    scheme: &mut impl Scheme<D>,
+    grain: Grain,
+) -> Result<Track, Broken> {
+    let flow = Flow::<D>::new(body);
+    let end = times.last().copied().unwrap_or(0.0);
+    let kinks = kinks(body.muscles.as_ref(), end);
+    let y = start::<D>(body);
+    let mut follower = Follower {
+        flow: &flow,
+        scheme,
+        grain,
+        window: window(&kinks, 0, end),
+        time: 0.0,
+        y,
+        modes: Vec::new(),
+        gaps: Vec::new(),
+        slopes: Vec::new(),
+        events: Vec::new(),
+    };
+    let mut track = Track::default();
+    let mut next = 0;
+    follower.modes = flow.settle(follower.window, &mut follower.y, grain.push, 0.01 * grain.chunk);
+    follower.look();
+    for &time in times {
+        while next < kinks.len() && kinks[next] < time {
+            follower.go_to(kinks[next])?;
+            next += 1;
+            follower.window = window(&kinks, next, end);
+            follower.look();
+        }
+        follower.go_to(time)?;
+        track.positions.extend(vectors::<D>(body, &follower.y, 0));
+    }
+    track.velocities = vectors::<D>(body, &follower.y, body.particles.len()).collect();
+    track.events = follower.events;
+    Ok(track)
+}
+
+/// Positions and velocities at the start.
+fn start<const D: usize>(body: &ProblemBody) -> Vec<f64> {
+    let particles = &body.particles;
+    let vectors = particles.positions().chain(particles.velocities());
+    vectors.flat_map(|vector| vector.to_array().into_iter().take(D)).collect()
+}
+
+/// Rows of a state from `first` on as vectors. What an axis leaves out is as it was at the start: at rest.
+fn vectors<'a, const D: usize>(body: &'a ProblemBody, y: &'a [f64], first: usize) -> impl Iterator<Item = DVec3> + 'a {
+    let rows = y.as_chunks::<D>().0;
+    body.particles.positions().enumerate().map(move |(i, at)| {
+        let mut vector = if first == 0 { at.to_array() } else { [0.0; 3] };
+        vector[..D].copy_from_slice(&rows[first + i]);
+        DVec3::from(vector)
+    })
+}
+
+/// The times of the piece before a kink, or before the end, without the instants of the kinks themselves.
+fn window(kinks: &[f64], next: usize, end: f64) -> [f64; 2] {
+    // Far more than rounding errors of a phase, far less than what could be seen.
+    let inward = 1e-13 * end;
+    let from = if next == 0 { 0.0 } else { kinks[next - 1] + inward };
+    let to = kinks.get(next).map_or(end, |kink| kink - inward);
+    [from, to.max(from)]
+}
+
+struct Follower<'a, S, const D: usize> {
+    flow: &'a Flow<'a, D>,
+    scheme: &'a mut S,
+    grain: Grain,
+    window: [f64; 2],
+    time: f64,
+    y: Vec<f64>,
+    modes: Vec<Mode>,
+    /// How far each mass of the spine is from an event, and how fast that changes.
+    gaps: Vec<f64>,
+    slopes: Vec<f64>,
+    events: Vec<StickSlip>,
+}
+
+impl<S: Scheme<D>, const D: usize> Follower<'_, S, D> {
+    fn piece(&self) -> Piece<'_, D> {
+        Piece { flow: self.flow, modes: &self.modes, window: self.window }
+    }
+
+    fn broken(&self, problem: impl Into<String>) -> Broken {
+        Broken { time: self.time, problem: problem.into() }
+    }
+
+    /// Goes to `end` through all events before it.
+    fn go_to(&mut self, end: f64) -> Result<(), Broken> {
+        /// More events in one chunk than a body has that is not shaking its friction.
+        const MOST_EVENTS: u32 = 1000;
+        let mut events = 0;
+        while self.time < end {
+            let to = if end - self.time <= 1.000_001 * self.grain.chunk { end } else { self.time + self.grain.chunk };
+            let y = self.state_at(to)?;
+            if !y.iter().all(|value| value.is_finite()) {
+                return Err(self.broken("it is not finite"));
+            }
+            if let Some(spring) = self.flow.collapsed(&self.y, &y) {
+                return Err(self.broken(format!("spring {spring} has no length")));
+            }
+            let mut ahead = Ahead { time: to, y, gaps: Vec::new(), slopes: Vec::new() };
+            self.measure(&mut ahead, -1.0);
+            let Some((time, node)) = self.first_event(&ahead)? else {
+                (self.time, self.y, self.gaps, self.slopes) = (ahead.time, ahead.y, ahead.gaps, ahead.slopes);
+                events = 0;
+                continue;
+            };
+            events += 1;
+            if events > MOST_EVENTS {
+                return Err(self.broken("a mass starts and stops to slide without end"));
+            }
+            self.y = self.state_at(time)?;
+            self.time = time;
+            self.switch(node);
+        }
+        Ok(())
+    }
+
+    fn state_at(&mut self, time: f64) -> Result<Vec<f64>, Broken> {
+        if time <= self.time {
+            return Ok(self.y.clone());
+        }
+        let piece = Piece { flow: self.flow, modes: &self.modes, window: self.window };
+        self.scheme.advance(&piece, self.time, &self.y, time).map_err(|problem| Broken { time: self.time, problem })
+    }
+
+    /// Changes the mode of a mass.
+    fn switch(&mut self, node: usize) {
+        let ratchet = self.flow.is_ratchet();
+        self.modes[node] = match self.modes[node] {
+            Mode::Held | Mode::Back => Mode::Forward,
+            Mode::Forward if ratchet => Mode::Held,
+            Mode::Forward => Mode::Back,
+        };
+        if self.modes[node] == Mode::Held {
+            self.flow.stop(node, &mut self.y);
+        }
+        if ratchet {
+            let particle = ParticleId(self.flow.particle(node) as u32);
+            let slides = self.modes[node] == Mode::Forward;
+            self.events.push(StickSlip { body: 0, particle, time: self.time, slides });
+        }
+        self.look();
+    }
+
+    /// Works out gaps and slopes where it is.
+    fn look(&mut self) {
+        let mut here = Ahead { time: self.time, y: core::mem::take(&mut self.y), gaps: Vec::new(), slopes: Vec::new() };
+        self.measure(&mut here, 1.0);
+        (self.y, self.gaps, self.slopes) = (here.y, here.gaps, here.slopes);
+    }
+
+    /// Fills in gaps, and their slopes as seen from the side of `side`.
+    fn measure(&self, at: &mut Ahead, side: f64) {
+        if !self.flow.has_events() {
+            return;
+        }
+        let piece = self.piece();
+        piece.gaps(at.time, &at.y, &mut at.gaps);
+        let mut derivative = vec![0.0; at.y.len()];
+        piece.derivative(at.time, &at.y, &mut derivative);
+        let little = side * 1e-4 * self.grain.chunk;
+        let beside: Vec<_> = at.y.iter().zip(&derivative).map(|(y, slope)| y + little * slope).collect();
+        piece.gaps(at.time + little, &beside, &mut at.slopes);
+        for (slope, gap) in at.slopes.iter_mut().zip(&at.gaps) {
+            *slope = (*slope - gap) / little;
+        }
+    }
+
+    fn nothing(&self, node: usize) -> f64 {
+        if self.modes[node] == Mode::Held { self.grain.push } else { self.grain.speed }
+    }
+
+    fn gap_at(&mut self, time: f64, node: usize) -> Result<f64, Broken> {
+        let y = self.state_at(time)?;
+        let mut gaps = Vec::new();
+        self.piece().gaps(time, &y, &mut gaps);
+        Ok(gaps[node])
+    }
+
+    /// The first event between here and `ahead`.
+    fn first_event(&mut self, ahead: &Ahead) -> Result<Option<(f64, usize)>, Broken> {
+        let mut first: Option<(f64, usize)> = None;
+        for node in 0..ahead.gaps.len() {
+            let nothing = self.nothing(node);
+            let beyond = if ahead.gaps[node] < -nothing || self.gaps[node] < -nothing {
+                ahead.time
+            } else {
+                match self.dip(ahead, node) {
+                    Some(time) if self.gap_at(time, node)? < -nothing => time,
+                    _ => continue,
+                }
+            };
+            let time = self.crossing(node, beyond)?;
+            if first.is_none_or(|(earliest, _)| time < earliest) {
+                first = Some((time, node));
+            }
+        }
+        Ok(first)
+    }
+
+    /// Where between here and `ahead` a gap may have closed and opened again: near the least of its cubic.
+    fn dip(&self, ahead: &Ahead, node: usize) -> Option<f64> {
+        let h = ahead.time - self.time;
+        let (g0, g1) = (self.gaps[node], ahead.gaps[node]);
+        let (m0, m1) = (self.slopes[node] * h, ahead.slopes[node] * h);
+        if !(m0 < 0.0 && m1 > 0.0) {
+            return None;
+        }
+        // g(θ) = g0 + m0·θ + b·θ² + a·θ³; at its least g' = m0 + 2bθ + 3aθ² = 0 with g'' > 0.
+        let (a, b) = (m0 + m1 - 2.0 * (g1 - g0), 3.0 * (g1 - g0) - 2.0 * m0 - m1);
+        let root = (b * b - 3.0 * a * m0).max(0.0).sqrt();
+        let at = (-m0 / (b + root)).clamp(0.0, 1.0);
+        let least = g0 + at * (m0 + at * (b + at * a));
+        (least < 0.05 * (m1 - m0)).then_some(self.time + at * h)
+    }
+
+    /// Where a gap closes, between here and `beyond`, where it is closed: by regula falsi in the Illinois variant, integrating anew to every trial.
+    fn crossing(&mut self, node: usize, beyond: f64) -> Result<f64, Broken> {
+        const MOST_TRIALS: u32 = 200;
+        let (mut low, mut high) = (self.time, beyond);
+        let (mut open, mut closed) = (self.gaps[node], self.gap_at(high, node)?);
+        if open <= 0.0 {
+            return Ok(low);
+        }
+        let mut last = 0;
+        for trial in 0..MOST_TRIALS {
+            let mut middle = (low * closed - high * open) / (closed - open);
+            // Halving now and then bounds the work.
+            if trial % 8 == 7 || !(low < middle && middle < high) {
+                middle = 0.5 * (low + high);
+            }
+            if middle <= low || middle >= high || high - low < 1e-15 * high {
+                break;
+            }
+            let gap = self.gap_at(middle, node)?;
+            if gap > 0.0 {
+                (low, open) = (middle, gap);
+                closed *= if last == 1 { 0.5 } else { 1.0 };
+                last = 1;
+            } else if gap < 0.0 {
+                (high, closed) = (middle, gap);
+                open *= if last == -1 { 0.5 } else { 1.0 };
+                last = -1;
+            } else {
+                return Ok(middle);
+            }
+        }
+        Ok(high)
+    }
+}
+
+/// A state further on, with what is to be known about events there.
+struct Ahead {
+    time: f64,
+    y: Vec<f64>,
+    gaps: Vec<f64>,
+    slopes: Vec<f64>,
+}

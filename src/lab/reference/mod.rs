@@ -1,0 +1,113 @@
+//! Reference solutions: the motion itself, as far as rounding errors let it be known.
+//!
+//! Each body is followed twice, piece by piece between events that are located ([`follow`]): by DOP853 at a tolerance of 1e-12, which is the reference, and
+//! by collocation in small fixed steps, which confirms it. Both see the same forces, and nothing else is shared.
+
+mod flow;
+mod follow;
+mod kinks;
+mod schemes;
+
+use bevy::math::DVec3;
+
+use crate::mechanics::{
+    integrators::{Method, StickRule},
+    stability_bound,
+};
+
+use self::{
+    follow::{Broken, Grain, Track, follow},
+    schemes::{Dop853, Gauss},
+};
+use super::{LabError, Problem, ProblemBody};
+
+pub use follow::StickSlip;
+
+/// The exact motion of a problem's bodies at the shared times.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Reference {
+    /// Body by body, all positions at the first of the shared times, then at the second, and so on.
+    pub(super) positions: Vec<Vec<DVec3>>,
+    /// Body by body, all velocities at the last of the shared times.
+    pub(super) velocities: Vec<Vec<DVec3>>,
+    /// When masses start and stop to slide, in order.
+    pub(super) events: Vec<StickSlip>,
+    /// How far it is from what confirms it.
+    pub(super) error: f64,
+}
+
+impl Reference {
+    /// What it is and what confirms it.
+    pub const WORDS: &str = "DOP853 at rtol 1e-12 with located events, confirmed by Gauss collocation of order 6";
+
+    /// Follows all bodies of a problem, without looking into the cache.
+    ///
+    /// # Errors
+    /// If a body meets a ground, of which no smooth piece is known, or the motion of one cannot be followed.
+    pub fn solve(problem: &Problem) -> Result<Self, LabError> {
+        let mut reference = Self { positions: Vec::new(), velocities: Vec::new(), events: Vec::new(), error: 0.0 };
+        for (index, body) in problem.bodies.iter().enumerate() {
+            if body.ground.is_some() {
+                let what = "a body on the ground, whose contacts are not located".into();
+                return Err(LabError::Unsupported { scene: problem.name.clone(), what });
+            }
+            let on_axis = body.parts(Method::default(), StickRule::default()).on_axis();
+            let tracks = if on_axis { both::<1>(problem, body) } else { both::<3>(problem, body) };
+            let (track, error) = tracks.map_err(|Broken { time, problem }| {
+                let body = body.name.clone();
+                LabError::Reference { body, time, problem }
+            })?;
+            reference.error = reference.error.max(error);
+            reference.events.extend(track.events.iter().map(|&event| StickSlip { body: index, ..event }));
+            reference.positions.push(track.positions);
+            reference.velocities.push(track.velocities);
+        }
+        reference.events.sort_by(|a, b| a.time.total_cmp(&b.time));
+        Ok(reference)
+    }
+
+    /// Where a body's particles are at one of the shared times, counted from 0.
+    pub fn positions(&self, body: usize, sample: usize) -> &[DVec3] {
+        let particles = self.velocities[body].len();
+        &self.positions[body][sample * particles..(sample + 1) * particles]
+    }
+
+    /// The velocities of a body's particles at the last of the shared times.
+    pub fn last_velocities(&self, body: usize) -> &[DVec3] {
+        &self.velocities[body]
+    }
+
+    /// When masses start and stop to slide, in order. What slides from the start is not among them.
+    pub fn events(&self) -> &[StickSlip] {
+        &self.events
+    }
+
+    /// How far the reference is from what confirms it, in lengths: the largest distance of any particle at any shared time.
+    pub fn error(&self) -> f64 {
+        self.error
+    }
+}
+
+/// One body by both schemes: the track of the first, and how far the other is from it.
+fn both<const D: usize>(problem: &Problem, body: &ProblemBody) -> Result<(Track, f64), Broken> {
+    let times = problem.times();
+    let bound = stability_bound(&body.parts(Method::default(), StickRule::default()), true);
+    let stiffest = bound.rates.iter().map(|rates| rates.stiffness).fold(0.0, f64::max).sqrt();
+    let damping = bound.rates.iter().map(|rates| rates.damping).fold(0.0, f64::max);
+    let drive = body.muscles.iter().flat_map(|muscles| muscles.iter()).map(|muscle| 6.3 / muscle.period);
+    let rate = (stiffest + damping + bound.mass_damping + bound.friction).max(drive.fold(0.0, f64::max));
+    let rate = rate.max(1.0 / problem.duration);
+    let size = body.springs.iter().map(|spring| spring.rest_length).fold(0.0, f64::max);
+    let size = if size > 0.0 { size } else { 1.0 };
+    let grain = |parts: f64| Grain {
+        // Often enough that no mass starts and stops again in between unseen.
+        chunk: (problem.spacing() / parts).min(0.3 / stiffest),
+        speed: 1e-14 * size * rate,
+        push: 1e-13 * size * rate * rate,
+    };
+    let track = follow::<D>(body, &times, &mut Dop853::new(size), grain(4.0))?;
+    let confirmation = follow::<D>(body, &times, &mut Gauss::new(rate), grain(5.0))?;
+    let pairs = track.positions.iter().zip(&confirmation.positions);
+    let error = pairs.map(|(a, b)| a.distance(*b)).fold(0.0, f64::max);
+    Ok((track, error))
+}

@@ -1,0 +1,198 @@
+//! One run of a problem by one method with one step: how far from the reference it ends up, and what it costs.
+
+use core::time::Duration;
+use std::time::Instant;
+
+use bevy::math::DVec3;
+
+use crate::mechanics::{Advance, Model, State, Timeline, integrators::StickRule};
+
+use super::{Errors, Point, Problem, ProblemBody, Reference, Setting};
+
+/// A rest of a step that is a rounding error.
+const ROUNDING: f64 = 1e-9;
+
+/// Runs a problem once to see how far it is from the reference, and then again as often as `repeats` says to see how long it takes.
+///
+/// A shared time that no step ends at is met by one shorter step from the last step before it, which the run itself does not see. Only stepping is
+/// timed: all bodies one after the other on one thread, after a run that warms up. Runs that take long are repeated less often, three times
+/// at least; those that blow up are not.
+pub fn measure(problem: &Problem, reference: &Reference, setting: Setting, repeats: usize) -> Point {
+    /// How long a point may take.
+    const LONGEST: Duration = Duration::from_secs(10);
+    let errors = errors(problem, reference, setting);
+    let steps = steps_to(problem.duration, setting.dt);
+    let started = Instant::now();
+    let (warm_up, evaluations) = stepping(problem, setting, steps);
+    let mut seconds: Vec<f64> = Vec::with_capacity(repeats);
+    if errors.is_some() {
+        while seconds.len() < repeats && (seconds.len() < 3 || started.elapsed() < LONGEST) {
+            seconds.push(stepping(problem, setting, steps).0);
+        }
+    }
+    if seconds.is_empty() {
+        seconds.push(warm_up);
+    }
+    seconds.sort_by(f64::total_cmp);
+    let half = seconds.len() / 2;
+    let median = if seconds.len() % 2 == 1 { seconds[half] } else { 0.5 * (seconds[half - 1] + seconds[half]) };
+    Point { setting, steps, evaluations, seconds: seconds[0], median_seconds: median, errors }
+}
+
+/// How many steps of `dt` it takes to get to `time`.
+pub(super) fn steps_to(time: f64, dt: f64) -> u64 {
+    (time / dt - ROUNDING).ceil().max(1.0) as u64
+}
+
+/// Steps all bodies and gives back the seconds that took and the evaluations.
+pub(super) fn stepping(problem: &Problem, setting: Setting, steps: u64) -> (f64, u64) {
+    let (mut seconds, mut evaluations) = (0.0, 0);
+    for body in &problem.bodies {
+        let on_axis = body.parts(setting.method, setting.stick).on_axis();
+        let run = if on_axis { step_body::<1> } else { step_body::<3> };
+        let (more_seconds, more_evaluations) = run(body, setting, steps);
+        (seconds, evaluations) = (seconds + more_seconds, evaluations + more_evaluations);
+    }
+    (seconds, evaluations)
+}
+
+fn step_body<const D: usize>(body: &ProblemBody, setting: Setting, steps: u64) -> (f64, u64) {
+    let mut run = Run::<D>::new(body, setting, 0.0);
+    let started = Instant::now();
+    // Whether it blew up is known from the run that was compared.
+    let _ = run.advance(0, steps);
+    (started.elapsed().as_secs_f64(), run.model.evaluations(0))
+}
+
+/// Whether it makes a difference to a setting when friction acts in its steps.
+pub(super) fn ends_differ(problem: &Problem, setting: Setting) -> bool {
+    /// Steps after which the difference shows.
+    const STEPS: u64 = 64;
+    problem.bodies.iter().any(|body| {
+        let end = |stick| {
+            let setting = Setting { stick, ..setting };
+            let on_axis = body.parts(setting.method, stick).on_axis();
+            if on_axis { end_of::<1>(body, setting, STEPS) } else { end_of::<3>(body, setting, STEPS) }
+        };
+        end(StickRule::InStages) != end(StickRule::EndOfStep)
+    })
+}
+
+/// The bits of all positions after some steps.
+fn end_of<const D: usize>(body: &ProblemBody, setting: Setting, steps: u64) -> Vec<u64> {
+    let mut run = Run::<D>::new(body, setting, 0.0);
+    let _ = run.advance(0, steps);
+    run.state.position.iter().flatten().map(|value| value.to_bits()).collect()
+}
+
+/// The errors of a run at the shared times; `None` where it blows up or its method refuses a step.
+pub(super) fn errors(problem: &Problem, reference: &Reference, setting: Setting) -> Option<Errors> {
+    let times = problem.times();
+    let mut sum = Sum::default();
+    for (index, body) in problem.bodies.iter().enumerate() {
+        let exact = |sample| reference.positions(index, sample);
+        if body.parts(setting.method, setting.stick).on_axis() {
+            compare::<1>(body, setting, &times, exact, &mut sum)?;
+        } else {
+            compare::<3>(body, setting, &times, exact, &mut sum)?;
+        }
+    }
+    Some(Errors { largest: sum.largest, rms: (sum.squares / sum.count.max(1.0)).sqrt(), distance: sum.distance })
+}
+
+/// What errors are made from.
+#[derive(Default)]
+struct Sum {
+    largest: f64,
+    squares: f64,
+    count: f64,
+    distance: f64,
+}
+
+impl Sum {
+    fn add(&mut self, positions: &[DVec3], exact: &[DVec3]) {
+        for (position, exact) in positions.iter().zip(exact) {
+            let square = position.distance_squared(*exact);
+            self.largest = self.largest.max(square.sqrt());
+            self.squares += square;
+            self.count += 1.0;
+        }
+    }
+}
+
+fn compare<'r, const D: usize>(
+    body: &ProblemBody,
+    setting: Setting,
+    times: &[f64],
+    exact: impl Fn(usize) -> &'r [DVec3],
+    sum: &mut Sum,
+) -> Option<()> {
+    let mut run = Run::<D>::new(body, setting, 0.0);
+    let (mut done, mut positions) = (0, Vec::new());
+    for (sample, &time) in times.iter().enumerate() {
+        let steps = (time / setting.dt + ROUNDING).floor() as u64;
+        if steps > done {
+            run.advance(done, steps - done)?;
+            done = steps;
+        }
+        let start = steps as f64 * setting.dt;
+        if time - start > ROUNDING * setting.dt {
+            let mut part = Run::<D>::new(body, Setting { dt: time - start, ..setting }, start);
+            part.state.clone_from(&run.state);
+            part.advance(0, 1)?;
+            part.positions(body, &mut positions);
+        } else {
+            run.positions(body, &mut positions);
+        }
+        sum.add(&positions, exact(sample));
+    }
+    let centers = [center(body, &positions), center(body, exact(times.len() - 1))];
+    sum.distance = sum.distance.max(centers[0].distance(centers[1]));
+    Some(())
+}
+
+/// The centre of mass; of particles that have none, the mean of their positions.
+fn center(body: &ProblemBody, positions: &[DVec3]) -> DVec3 {
+    let masses = body.particles.masses();
+    let total: f64 = masses.iter().sum();
+    if total == 0.0 {
+        return positions.iter().sum::<DVec3>() / positions.len().max(1) as f64;
+    }
+    positions.iter().zip(masses).map(|(&position, &mass)| position * mass).sum::<DVec3>() / total
+}
+
+/// A body on its way.
+struct Run<const D: usize> {
+    model: Model<f64, D>,
+    state: State<f64, D>,
+    setting: Setting,
+    timeline: Timeline,
+}
+
+impl<const D: usize> Run<D> {
+    fn new(body: &ProblemBody, setting: Setting, start: f64) -> Self {
+        let mut state = State::new(body.particles.len());
+        state.set_lane(0, &body.particles);
+        let model = Model::new(&body.parts(setting.method, setting.stick), [], setting.dt);
+        Self { model, state, setting, timeline: Timeline { dt: setting.dt, base_step: 0, base_time: start } }
+    }
+
+    /// Takes steps. `None` where the body has blown up or a step was refused.
+    fn advance(&mut self, first: u64, steps: u64) -> Option<()> {
+        let (model, state, timeline) = (&mut self.model, &mut self.state, self.timeline);
+        Advance { model, state, method: self.setting.method, timeline, first, steps }.run();
+        let failed =
+            self.model.has_exploded(0) || self.model.has_refused(0) || self.model.explosion(&self.state, 0).is_some();
+        (!failed).then_some(())
+    }
+
+    /// Where the particles are; what an axis leaves out is as it was at the start.
+    fn positions(&self, body: &ProblemBody, positions: &mut Vec<DVec3>) {
+        positions.clear();
+        positions.extend(body.particles.positions().zip(&self.state.position).map(|(at, row)| {
+            let mut vector = at.to_array();
+            vector[..D].copy_from_slice(row);
+            DVec3::from(vector)
+        }));
+    }
+}

@@ -1,0 +1,161 @@
+//! Speed against accuracy: every method over many steps, from its stability edge downwards.
+
+use core::convert::Infallible;
+
+use crate::{
+    mechanics::integrators::{Method, StickRule},
+    scenes::{DOCUMENT_DT, LoadedScene},
+};
+
+use super::{
+    Cache, LabError, Point, Problem, Reference, Setting, WorkPrecision,
+    machine::machine,
+    run::{ends_differ, measure, steps_to},
+};
+
+/// How a sweep is done.
+#[derive(Clone, Debug)]
+pub struct SweepOptions {
+    /// Eight steps a method, each timed three times, instead of all down to the document's step, each timed twenty times.
+    pub quick: bool,
+    /// Where references are kept.
+    pub cache: Cache,
+}
+
+impl Default for SweepOptions {
+    fn default() -> Self {
+        Self { quick: false, cache: Cache::of_platform() }
+    }
+}
+
+/// Fewer steps than this no method gets, unless they take too long.
+const LEAST_STEPS: usize = 8;
+
+impl SweepOptions {
+    /// How often a point is timed.
+    pub fn repeats(&self) -> usize {
+        if self.quick { 3 } else { 20 }
+    }
+
+    /// How many spring updates one run may take.
+    fn most_work(&self) -> f64 {
+        if self.quick { 1e8 } else { 1e9 }
+    }
+}
+
+/// Runs every method over its steps and compares with the reference. Methods that let friction act in their stages are run once more with friction at
+/// the end of the step, where that makes a difference. The setting of the scene and that of the document are among the points. `progress` hears
+/// after every point how many of how many are done and what comes next or is left out; left out are runs of more than a thousand million spring
+/// updates (a hundred million in a quick sweep).
+///
+/// # Errors
+/// If the scene has no reference; see [`Reference::solve`].
+pub fn work_precision(
+    scene: &LoadedScene,
+    options: &SweepOptions,
+    progress: &mut dyn FnMut(usize, usize, &str),
+) -> Result<WorkPrecision, LabError> {
+    let problem = Problem::of(scene)?;
+    progress(0, 1, "reference");
+    let reference = options.cache.reference(&problem)?;
+    Ok(sweep(&problem, &reference, options, progress))
+}
+
+/// As [`work_precision`], of a problem whose reference is known.
+pub fn sweep(
+    problem: &Problem,
+    reference: &Reference,
+    options: &SweepOptions,
+    progress: &mut dyn FnMut(usize, usize, &str),
+) -> WorkPrecision {
+    let measure = &mut |setting| Ok::<_, Infallible>(measure(problem, reference, setting, options.repeats()));
+    let Ok(chart) = resumed_sweep(problem, reference, options, measure, progress);
+    chart
+}
+
+/// As [`sweep`], with points by `measure`, which may know some of them already; see [`measure`].
+///
+/// # Errors
+/// The first one of `measure`.
+pub fn resumed_sweep<E>(
+    problem: &Problem,
+    reference: &Reference,
+    options: &SweepOptions,
+    measure: &mut dyn FnMut(Setting) -> Result<Point, E>,
+    progress: &mut dyn FnMut(usize, usize, &str),
+) -> Result<WorkPrecision, E> {
+    let plan = plan(problem, options, progress);
+    let mut points: Vec<Point> = Vec::with_capacity(plan.len());
+    for (done, &setting) in plan.iter().enumerate() {
+        progress(done, plan.len(), &format!("{} with dt {}", setting.method.name(), setting.dt));
+        points.push(measure(setting)?);
+    }
+    progress(plan.len(), plan.len(), "done");
+    Ok(WorkPrecision {
+        scene: problem.name.clone(),
+        title: problem.title.clone(),
+        duration: problem.duration,
+        real_time: problem.duration / problem.time_scale,
+        points,
+        limits: Method::ALL.map(|method| (method, problem.stability_limit(method, StickRule::InStages))).into(),
+        setting: problem.setting,
+        budget: problem.budget,
+        reference: Reference::WORDS.into(),
+        reference_error: reference.error(),
+        machine: machine(),
+    })
+}
+
+/// The document's setting: half a millisecond, semi-implicit Euler.
+pub(super) const DOCUMENT: Setting =
+    Setting { method: Method::SemiImplicitEuler, stick: StickRule::InStages, dt: DOCUMENT_DT };
+
+/// All settings, method by method and from the largest step down.
+fn plan(problem: &Problem, options: &SweepOptions, progress: &mut dyn FnMut(usize, usize, &str)) -> Vec<Setting> {
+    let has_friction = problem.bodies.iter().any(|body| body.friction.is_some());
+    let mut plan = Vec::new();
+    for method in Method::ALL {
+        for stick in [StickRule::InStages, StickRule::EndOfStep] {
+            let own: Vec<_> = [DOCUMENT, problem.setting]
+                .into_iter()
+                .filter(|own| (own.method, own.stick) == (method, stick))
+                .collect();
+            let ladder = ladder(problem, method, stick, options);
+            let middle = Setting { method, stick: StickRule::InStages, dt: ladder[ladder.len() / 2] };
+            let is_other = stick == StickRule::InStages || has_friction && ends_differ(problem, middle);
+            let (fits, too_long): (Vec<_>, Vec<_>) =
+                ladder.into_iter().partition(|&dt| work(problem, method, dt) <= options.most_work());
+            if let (true, Some(dt)) = (is_other, too_long.first()) {
+                progress(plan.len(), plan.len(), &format!("left out: {} from dt {dt:.3e} down", method.name()));
+            }
+            let mut steps: Vec<_> = if is_other { fits } else { Vec::new() };
+            steps.extend(own.iter().map(|own| own.dt));
+            steps.sort_by(|a, b| b.total_cmp(a));
+            steps.dedup();
+            plan.extend(steps.into_iter().map(|dt| Setting { method, stick, dt }));
+        }
+    }
+    plan
+}
+
+/// The steps of a method: one above its stability edge, to see it fail, then from the edge down by halves, eight at least and as far as the
+/// document's step. A method without an edge starts at an eighth of the period.
+fn ladder(problem: &Problem, method: Method, stick: StickRule, options: &SweepOptions) -> Vec<f64> {
+    let limit = problem.stability_limit(method, stick);
+    let (above, edge) = match limit {
+        limit if limit > 0.0 && limit < problem.duration / 10.0 => (Some(2.0 * limit), limit),
+        _ => (None, problem.period.unwrap_or(problem.duration / 10.0) / 8.0),
+    };
+    let down = (0..).map(|halvings| edge / f64::from(1_u32 << halvings)).take(30).enumerate();
+    let down = down.take_while(|&(i, dt)| i < LEAST_STEPS || (!options.quick && dt >= 0.5 * DOCUMENT_DT));
+    above.into_iter().chain(down.map(|(_, dt)| dt)).collect()
+}
+
+/// About how many spring updates a run takes.
+fn work(problem: &Problem, method: Method, dt: f64) -> f64 {
+    /// Of methods that do not know before how often they evaluate the forces.
+    const MANY: u64 = 20;
+    let springs: usize = problem.bodies.iter().map(|body| body.springs.len().max(body.particles.len())).sum();
+    let evaluations = steps_to(problem.duration, dt) * method.about().evaluations.unwrap_or(MANY);
+    evaluations as f64 * springs as f64
+}

@@ -1,0 +1,264 @@
+//! The laboratory: references, runs, sweeps, and what is chosen from them.
+
+use std::fs;
+
+use bevy::math::DVec3;
+use wriggle::{
+    body::{Particle, ParticleId, Particles, Spring, Springs},
+    lab::{Cache, Problem, ProblemBody, Reference, Setting, SweepOptions, measure, work_precision},
+    mechanics::integrators::{Method, StickRule},
+    scenes,
+};
+
+use crate::support::{Body, Worm};
+
+const SETTING: Setting = Setting { method: Method::SemiImplicitEuler, stick: StickRule::InStages, dt: 0.01 };
+
+fn worm(body: Body) -> Problem {
+    let body = ProblemBody {
+        name: "worm".into(),
+        particles: body.particles,
+        springs: body.springs,
+        muscles: Some(body.muscles),
+        friction: Some(body.friction),
+        gravity: None,
+        ground: None,
+        mass_damping: None,
+    };
+    Problem::new("worm", vec![body], SETTING)
+}
+
+/// Two masses of 1 and 3 joined by a spring that is stretched by `stretch` at the start, on the x axis.
+fn oscillator(stiffness: f64, damping: f64, stretch: f64) -> Problem {
+    let at = |x: f64, mass| Particle { mass, ..Particle::at(DVec3::X * x) };
+    let particles = Particles::new([at(0.0, 1.0), at(1.0 + stretch, 3.0)]).unwrap();
+    let spring = Spring { ends: [ParticleId(0), ParticleId(1)], stiffness, damping, rest_length: 1.0 };
+    let springs = Springs::new([spring], &particles).unwrap();
+    let body = ProblemBody {
+        name: "oscillator".into(),
+        particles,
+        springs,
+        muscles: None,
+        friction: None,
+        gravity: None,
+        ground: None,
+        mass_damping: None,
+    };
+    Problem::new("oscillator", vec![body], SETTING)
+}
+
+#[test]
+fn the_reference_of_the_exact_worm_is_the_known_one() {
+    let problem = worm(Worm::EXACT.body());
+    assert_eq!((problem.duration, problem.times().len()), (20.0, 1000));
+    assert!((problem.spacing() - 0.02).abs() < 1e-15);
+    let reference = Reference::solve(&problem).unwrap();
+    assert!(reference.error() < 1e-12, "{:e} from what confirms it", reference.error());
+    let last: Vec<_> = reference.positions(0, 999).iter().map(|x| x.x).collect();
+    let known = [3.058918927290, 3.994998746503, 5.085548685141];
+    assert!(last.iter().zip(known).all(|(x, known)| (x - known).abs() < 1e-11), "{last:?}");
+    let speeds: Vec<_> = reference.last_velocities(0).iter().map(|v| v.x).collect();
+    let known = [0.232059061039, 0.202115095212, 0.063038244008];
+    assert!(speeds.iter().zip(known).all(|(v, known)| (v - known).abs() < 1e-11), "{speeds:?}");
+    let travelled = last.iter().sum::<f64>() / 3.0 - 1.0;
+    assert!((travelled - 3.046488786311).abs() < 1e-11, "{travelled}");
+    let events = reference.events();
+    assert_eq!(events.len(), 26, "{events:?}");
+    let first = [(2, true, 0.368158542829), (0, true, 0.835621599543), (1, false, 1.008115772431)];
+    for (event, (particle, slides, time)) in events.iter().zip(first) {
+        assert_eq!((event.particle, event.slides), (ParticleId(particle), slides), "{event:?}");
+        assert!((event.time - time).abs() < 1e-11, "{event:?}, known at {time}");
+    }
+    let cycles = [0.149138, 0.285996, 0.314267, 0.321484, 0.325558, 0.327983, 0.329459, 0.330370, 0.330938, 0.331296];
+    let center = |cycle: usize| match cycle {
+        0 => 1.0,
+        _ => reference.positions(0, 100 * cycle - 1).iter().map(|x| x.x).sum::<f64>() / 3.0,
+    };
+    for (cycle, known) in cycles.into_iter().enumerate() {
+        let way = center(cycle + 1) - center(cycle);
+        assert!((way - known).abs() < 1e-6, "cycle {cycle}: {way}, known {known}");
+    }
+}
+
+#[test]
+fn the_reference_of_an_oscillator_is_its_closed_form() {
+    // d = stretch·e^(−γt/2)·(cos νt + γ/2ν·sin νt) with κ = k(1/m₁ + 1/m₂), γ = D(1/m₁ + 1/m₂), ν² = κ − γ²/4.
+    for (stiffness, damping) in [(2.0, 0.0), (2.0, 0.3), (40.0, 0.5)] {
+        let problem = oscillator(stiffness, damping, 0.2);
+        let reference = Reference::solve(&problem).unwrap();
+        assert!(reference.error() < 1e-12 && reference.events().is_empty());
+        let (kappa, gamma) = (stiffness * 4.0 / 3.0, damping * 4.0 / 3.0);
+        let nu = f64::sqrt(kappa - 0.25 * gamma * gamma);
+        for (sample, t) in problem.times().into_iter().enumerate() {
+            let wave = libm::cos(nu * t) + gamma / (2.0 * nu) * libm::sin(nu * t);
+            let length = 1.0 + 0.2 * libm::exp(-0.5 * gamma * t) * wave;
+            // The centre of mass stays where it is, a fourth of the length before the heavier mass.
+            let exact = [0.75 * 1.2 - 0.75 * length, 0.75 * 1.2 + 0.25 * length];
+            for (x, exact) in reference.positions(0, sample).iter().zip(exact) {
+                assert!((x.x - exact).abs() < 1e-11, "k {stiffness}, D {damping}, t {t}: {} is not {exact}", x.x);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_turned_worm_has_the_reference_of_the_straight_one() {
+    // Turned about y, it needs all three dimensions and its spine's direction; the garden's worm has a ramp and drag as well.
+    for worm_of in [Worm::EXACT, Worm::GARDEN] {
+        let turn = 0.7;
+        let straight = Reference::solve(&worm(worm_of.body())).unwrap();
+        let turned = Reference::solve(&worm(worm_of.body().moved(DVec3::new(2.0, 0.0, -1.0), turn))).unwrap();
+        assert!(straight.error() < 1e-12 && turned.error() < 1e-12);
+        assert_eq!(straight.events().len(), turned.events().len());
+        let rotation = bevy::math::DQuat::from_rotation_y(turn);
+        for sample in (0..1000).step_by(37) {
+            for (a, b) in straight.positions(0, sample).iter().zip(turned.positions(0, sample)) {
+                let moved = rotation * *a + DVec3::new(2.0, 0.0, -1.0);
+                assert!(moved.distance(*b) < 1e-11, "{worm_of:?} at sample {sample}: {moved} is not {b}");
+            }
+        }
+    }
+}
+
+#[test]
+fn methods_have_their_order_against_the_reference() {
+    for (method, order, damping, steps) in [
+        (Method::ExplicitEuler, 1.0, 0.3, [0.002, 0.001, 0.0005, 0.00025]),
+        (Method::SemiImplicitEuler, 1.0, 0.3, [0.002, 0.001, 0.0005, 0.00025]),
+        (Method::SemiImplicitEuler, 1.0, 0.0, [0.002, 0.001, 0.0005, 0.00025]),
+        (Method::StormerVerlet, 2.0, 0.0, [0.05, 0.025, 0.0125, 0.00625]),
+        (Method::RungeKutta2, 2.0, 0.3, [0.02, 0.01, 0.005, 0.0025]),
+        (Method::RungeKutta2, 2.0, 0.0, [0.02, 0.01, 0.005, 0.0025]),
+        (Method::RungeKutta4, 4.0, 0.3, [0.1, 0.05, 0.025, 0.0125]),
+        (Method::RungeKutta4, 4.0, 0.0, [0.1, 0.05, 0.025, 0.0125]),
+    ] {
+        let problem = oscillator(2.0, damping, 0.2);
+        let reference = Reference::solve(&problem).unwrap();
+        let errors = steps.map(|dt| {
+            let setting = Setting { method, stick: StickRule::InStages, dt };
+            measure(&problem, &reference, setting, 1).errors.unwrap().largest
+        });
+        for pair in errors.windows(2) {
+            let observed = libm::log2(pair[0] / pair[1]);
+            assert!((observed - order).abs() < 0.1, "{method:?}, D {damping}: order {observed} in {errors:?}");
+        }
+    }
+}
+
+#[test]
+fn a_step_that_meets_no_shared_time_is_compared_as_exactly() {
+    let problem = oscillator(2.0, 0.3, 0.2);
+    let reference = Reference::solve(&problem).unwrap();
+    let error = |dt| {
+        let setting = Setting { method: Method::RungeKutta4, stick: StickRule::InStages, dt };
+        measure(&problem, &reference, setting, 1).errors.unwrap().largest
+    };
+    let (even, odd) = (error(0.1), error(0.0997));
+    assert!((odd / even - 1.0).abs() < 0.1, "{even} at 0.1, {odd} at 0.0997");
+}
+
+#[test]
+fn a_run_that_blows_up_is_a_point_without_errors() {
+    let problem = worm(Worm::EXACT.body());
+    let reference = Reference::solve(&problem).unwrap();
+    let limit = problem.stability_limit(Method::SemiImplicitEuler, StickRule::InStages);
+    let run = |dt| measure(&problem, &reference, Setting { dt, ..SETTING }, 2);
+    let (well, blown) = (run(0.5 * limit), run(4.0 * limit));
+    assert!(well.errors.is_some() && blown.errors.is_none(), "{well:?} {blown:?}");
+    assert_eq!(well.steps, (20.0 / (0.5 * limit)).ceil() as u64);
+    assert_eq!(well.evaluations, well.steps);
+    assert!(0.0 < well.seconds && well.seconds <= well.median_seconds);
+    // The known errors of the document's method: 5e-3 or so a unit of dt.
+    let known = run(0.0005).errors.unwrap();
+    assert!((known.largest - 1.03e-3).abs() < 2e-4 && (known.distance - 1.0217e-3).abs() < 1e-6, "{known:?}");
+    assert!(known.rms < known.largest);
+}
+
+#[test]
+fn a_reference_is_kept_and_a_damaged_file_is_computed_again() {
+    let folder = tempfile::tempdir().unwrap();
+    // What does not exist yet is made.
+    let cache = Cache::at(folder.path().join("a/b"));
+    let problem = worm(Worm::EXACT.body());
+    let file = cache.file(&problem).unwrap();
+    let computed = cache.reference(&problem).unwrap();
+    let good = fs::read(&file).unwrap();
+    assert_eq!(cache.reference(&problem).unwrap(), computed);
+    // Whatever is wrong with the file: the same reference comes back, and the file is good again.
+    let mut flipped = good.clone();
+    flipped[good.len() / 2] ^= 1;
+    let mut other_version = good.clone();
+    other_version[18] = b'0';
+    for damaged in [flipped, other_version, good[..good.len() - 5].to_vec(), good[..20].to_vec(), Vec::new()] {
+        fs::write(&file, &damaged).unwrap();
+        assert_eq!(cache.reference(&problem).unwrap(), computed);
+        assert_eq!(fs::read(&file).unwrap(), good);
+    }
+    // The file is what is read: a reference with a right checksum is believed.
+    let other = worm(Worm { stiffness: 1.6, ..Worm::EXACT }.body());
+    assert_ne!(cache.file(&other), Some(file.clone()));
+    fs::write(cache.file(&other).unwrap(), &good).unwrap();
+    assert_ne!(cache.reference(&other).unwrap(), computed, "a file of another problem was believed");
+    // A folder that cannot be is no error.
+    fs::write(folder.path().join("plain"), "no folder").unwrap();
+    assert_eq!(Cache::at(folder.path().join("plain")).reference(&problem).unwrap(), computed);
+}
+
+#[test]
+fn the_hash_goes_by_the_physics_alone() {
+    let load = |change: &dyn Fn(&mut scenes::LoadedScene)| {
+        let mut scene = scenes::load("garden").unwrap();
+        change(&mut scene);
+        Problem::of(&scene).unwrap().hash()
+    };
+    let plain = load(&|_| {});
+    let same = load(&|scene| {
+        scene.file.title = "another".into();
+        scene.file.camera = scenes::Camera::default();
+        scene.file.method = Method::RungeKutta4;
+        scene.file.clock.step = scenes::StepSize::Dt(0.01);
+    });
+    assert_eq!(plain, same);
+    let stiffer = load(&|scene| scene.file.set = [("worm.springs.stiffness".into(), 1.6)].into());
+    let moved = load(&|scene| scene.file.creatures[0].at = (1.0, 0.0, 0.0));
+    assert!(plain != stiffer && plain != moved && stiffer != moved);
+}
+
+#[test]
+fn a_scene_on_the_ground_has_no_reference_and_says_so() {
+    let mut scene = scenes::load("glide").unwrap();
+    scene.file.ground = Some(wriggle::body::Ground::Flat);
+    let error = Reference::solve(&Problem::of(&scene).unwrap()).unwrap_err();
+    assert!(error.to_string().contains("glide") && error.to_string().contains("ground"), "{error}");
+}
+
+#[test]
+fn a_pixel_of_the_garden_is_the_known_length() {
+    let problem = Problem::of(&scenes::load("garden").unwrap()).unwrap();
+    // 2·16.5·tan 21°/1080.
+    assert!((problem.budget - 0.011729).abs() < 1e-6, "{}", problem.budget);
+    assert_eq!((problem.duration, problem.time_scale), (60.0, 3.0));
+}
+
+#[test]
+fn a_sweep_has_eight_steps_of_every_method_and_both_settings() {
+    let options = SweepOptions { quick: true, cache: Cache::none() };
+    let mut said = Vec::new();
+    let scene = scenes::load("glide").unwrap();
+    let chart =
+        work_precision(&scene, &options, &mut |done, total, what| said.push((done, total, what.to_owned()))).unwrap();
+    assert_eq!((chart.scene.as_str(), chart.duration, chart.real_time), ("glide", 20.0, 20.0));
+    for method in Method::ALL {
+        let steps: Vec<_> = chart.points.iter().filter(|point| point.setting.method == method).collect();
+        assert!(steps.len() >= 8, "{method:?} has {} points", steps.len());
+        for pair in steps.windows(2).filter(|pair| pair[0].setting.stick == pair[1].setting.stick) {
+            assert!(pair[0].setting.dt > pair[1].setting.dt && pair[0].steps < pair[1].steps);
+        }
+        let has_variant = steps.iter().any(|point| point.setting.stick == StickRule::EndOfStep);
+        assert_eq!(has_variant, method == Method::RungeKutta4 || has_variant && method != Method::SemiImplicitEuler);
+    }
+    let own = chart.points.iter().filter(|point| point.setting == chart.setting).count();
+    assert_eq!((own, chart.setting.dt), (1, 0.0005));
+    assert!(chart.points.iter().any(|point| point.errors.is_none()), "nothing blew up");
+    assert!(said.last().is_some_and(|last| last.0 == last.1 && last.0 == chart.points.len()));
+}
