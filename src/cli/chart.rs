@@ -40,19 +40,25 @@ pub(super) fn chart(arguments: &ChartArguments) -> Result<Outcome, CliError> {
         }
         let problem = Problem::of(scene)?;
         let key = key(&problem, &options);
-        let (chart, how) = match gallery.finished(name, &key) {
-            Some(chart) => (chart, "measured before"),
+        let finished = gallery.finished(name, &key);
+        let is_new = finished.is_none();
+        let chart = match finished {
+            Some(chart) => chart,
             None => match measured(&problem, &options, &gallery, &key) {
                 // A scene that has no reference leaves the others their charts.
                 Err(CliError::Lab(error @ LabError::Unsupported { .. })) => {
                     eprintln!("{error}; it gets no chart");
                     continue;
                 }
-                chart => (chart?, "measured"),
+                chart => chart?,
             },
         };
-        gallery.keep(&key, &chart)?;
-        gallery.write_page()?;
+        // What is read from JSON may differ in its last bits, so a table that is there is left as it is.
+        if is_new || !gallery.is_drawn(name) {
+            gallery.keep(&key, &chart)?;
+            gallery.write_page()?;
+        }
+        let how = if is_new { "measured" } else { "measured before" };
         let file = gallery.file(name, "svg");
         writeln!(out, "{name}: {} runs, {how}; {}", chart.points.len(), file.display()).map_err(CliError::stdout)?;
     }
@@ -99,14 +105,14 @@ fn measured(
     gallery: &Gallery,
     key: &str,
 ) -> Result<WorkPrecision, CliError> {
-    let mut partial = gallery.partial(&problem.name, key)?;
-    if !partial.is_empty() {
-        eprintln!("{}: going on after {} runs", problem.name, partial.len());
-    }
     let bar = progress(&problem.name);
     bar.set_message("reference");
     bar.tick();
     let reference = options.cache.reference(problem)?;
+    let mut partial = gallery.partial(&problem.name, key)?;
+    if !partial.is_empty() {
+        bar.suspend(|| eprintln!("{}: going on after {} runs", problem.name, partial.len()));
+    }
     let mut point = |setting| match partial.known(setting) {
         Some(point) => Ok(point),
         None => {

@@ -88,6 +88,11 @@ impl Gallery {
         (kept.problem == problem && kept.chart.scene == scene).then_some(kept.chart)
     }
 
+    /// Whether the table and the pictures of a scene are there.
+    pub fn is_drawn(&self, scene: &str) -> bool {
+        ["csv", "svg", "png"].iter().all(|suffix| self.file(scene, suffix).is_file())
+    }
+
     /// Goes on with the sweep of a scene that was interrupted, or begins one.
     ///
     /// # Errors

@@ -1,6 +1,10 @@
 //! Work-precision charts: where things are drawn, what is written, and what data may be.
 
-use std::{fs, path::Path};
+use std::{
+    fs,
+    path::Path,
+    process::{Command, Output},
+};
 
 use ab_glyph::{Font, FontRef};
 use tempfile::TempDir;
@@ -37,7 +41,7 @@ fn empty() -> WorkPrecision {
         limits: Method::ALL.map(|method| (method, f64::INFINITY)).to_vec(),
         setting: Setting { method: Method::RungeKutta4, stick: StickRule::InStages, dt: 0.05 },
         budget: 0.0089,
-        reference: "Exact flow between located events; DOP853 with located events confirms it".into(),
+        reference: "DOP853 with located events, confirmed by Gauss collocation".into(),
         reference_error: 2.3e-12,
         machine: "AMD EPYC 7B13, one thread; Wriggle 0.1.0 (2d644c7), release build".into(),
     }
@@ -110,21 +114,6 @@ fn absurd() -> WorkPrecision {
     chart.title = "A title that goes on and on ".repeat(20);
     chart.reference = "a\u{0}\n<b>&\"".repeat(200);
     chart
-}
-
-#[test]
-fn look_at_it() {
-    let folder = Path::new("/tmp/charts-made-up");
-    fs::create_dir_all(folder).unwrap();
-    for (name, chart) in [("full", full()), ("none", empty()), ("one", one()), ("exact", exact()), ("absurd", absurd())]
-    {
-        fs::write(folder.join(format!("{name}.html")), page(&[chart.clone(), empty()]).unwrap()).unwrap();
-        fs::write(folder.join(format!("{name}.csv")), csv(&chart)).unwrap();
-        fs::write(folder.join(format!("{name}.svg")), chart::svg(&chart).unwrap()).unwrap();
-        let start = std::time::Instant::now();
-        fs::write(folder.join(format!("{name}.png")), chart::png(&chart).unwrap()).unwrap();
-        println!("{name} {:?}", start.elapsed());
-    }
 }
 
 /// A chart of a method that is exactly of order 2 in both costs.
@@ -306,7 +295,6 @@ fn no_number_spoils_a_chart() {
             assert!(places.iter().all(|(x, y)| x.abs() < 1e5 && y.abs() < 1e5), "{places:?}");
         }
         let svg = chart::svg(&chart).unwrap();
-        assert!(!svg.contains("NaN") || chart.budget.is_nan());
         assert!(!svg.contains(|letter: char| letter.is_control() && letter != '\n'));
         page(&[chart]).unwrap();
     }
@@ -391,13 +379,16 @@ fn a_gallery_knows_what_it_has_measured() {
     let gallery = Gallery::open(folder.path().join("new/charts")).unwrap();
     let chart = one();
     assert!(gallery.finished("garden", "a").is_none());
+    gallery.partial("garden", "a").unwrap().push(chart.points[0]).unwrap();
     gallery.keep("a", &chart).unwrap();
     let kept = gallery.finished("garden", "a").unwrap();
     assert_eq!(kept.limits, chart.limits, "infinite limits survive");
     assert_eq!((kept.points.len(), kept.points[0].setting), (1, chart.points[0].setting));
+    assert!(gallery.is_drawn("garden") && !gallery.is_drawn("snake"));
     assert!(gallery.finished("garden", "b").is_none() && gallery.finished("snake", "a").is_none());
     let page = gallery.write_page().unwrap();
     assert!(fs::read_to_string(&page).unwrap().contains("<h2>Garden</h2>"));
+    // What is whole needs no parts.
     let names = ["garden.csv", "garden.json", "garden.png", "garden.svg", "index.html"];
     assert_eq!(files(page.parent().unwrap()), names);
     let png = fs::read(gallery.file("garden", "png")).unwrap();
@@ -416,5 +407,70 @@ fn a_gallery_says_which_folder_is_wrong() {
     for bad in [file.clone(), file.join("below")] {
         let error = Gallery::open(&bad).unwrap_err().to_string();
         assert!(error.starts_with(&bad.display().to_string()) && error.contains("give a folder"), "{error}");
+    }
+}
+
+#[test]
+fn an_interrupted_sweep_goes_on_where_it_stopped() {
+    let folder = TempDir::new().unwrap();
+    let gallery = Gallery::open(folder.path()).unwrap();
+    let points = of_order_two().points;
+    let mut partial = gallery.partial("garden", "a").unwrap();
+    assert!(partial.is_empty() && partial.known(points[0].setting).is_none());
+    points[..2].iter().for_each(|&point| partial.push(point).unwrap());
+    // Cut off in the middle of a line.
+    let file = gallery.file("garden", "part.jsonl");
+    let text = fs::read_to_string(&file).unwrap();
+    fs::write(&file, format!("{text}{{\"setting\":{{\"meth")).unwrap();
+    let mut partial = gallery.partial("garden", "a").unwrap();
+    assert_eq!((partial.len(), partial.known(points[1].setting)), (2, Some(points[1])));
+    assert_eq!(partial.known(points[2].setting), None);
+    partial.push(points[2]).unwrap();
+    assert_eq!(gallery.partial("garden", "a").unwrap().len(), 3, "what comes after the cut is whole");
+    assert!(gallery.partial("garden", "b").unwrap().is_empty(), "another problem begins anew");
+}
+
+fn run(folder: &Path, arguments: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_wriggle"));
+    command.arg("chart").args(arguments).current_dir(folder).env("XDG_CACHE_HOME", folder.join("cache"));
+    command.output().unwrap()
+}
+
+#[test]
+fn the_command_measures_a_scene_once() {
+    let folder = TempDir::new().unwrap();
+    let creature = "Creature(version: 1, body: Raw(particles: [(position: (0, 0, 0), mass: 1), (position: (1.2, 0, 0), \
+                    mass: 1)], springs: [(ends: (0, 1), stiffness: 0.1, damping: 0.1, rest_length: 1)]))";
+    fs::write(folder.path().join("pair.creature.ron"), creature).unwrap();
+    let arguments = ["pair.creature.ron", "--out", "charts", "--quick"];
+    let output = run(folder.path(), &arguments);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    assert!(String::from_utf8_lossy(&output.stdout).contains("runs, measured;"));
+    assert!(output.stderr.is_empty(), "no bar in a pipe: {}", String::from_utf8_lossy(&output.stderr));
+    let charts = folder.path().join("charts");
+    assert_eq!(files(&charts), ["index.html", "pair.csv", "pair.json", "pair.png", "pair.svg"]);
+    let table = fs::read_to_string(charts.join("pair.csv")).unwrap();
+    for method in Method::ALL {
+        assert!(table.contains(&format!("pair,{},", method.name())), "no run of {}", method.name());
+    }
+    let output = run(folder.path(), &arguments);
+    assert!(String::from_utf8_lossy(&output.stdout).contains("runs, measured before;"));
+    assert_eq!(fs::read_to_string(charts.join("pair.csv")).unwrap(), table);
+}
+
+#[test]
+fn the_command_says_what_is_wrong_before_it_measures() {
+    let folder = TempDir::new().unwrap();
+    fs::write(folder.path().join("taken"), "").unwrap();
+    let cases: [(&[&str], &str); 4] = [
+        (&["gardn", "--out", "charts"], "gardn"),
+        (&["garden", "--out", "taken"], "taken: is no folder; give a folder that can be written to"),
+        (&["garden", "--out", "taken/below"], "taken/below: cannot be written to"),
+        (&["garden", "garden", "--out", "charts"], "give `garden` once"),
+    ];
+    for (arguments, problem) in cases {
+        let output = run(folder.path(), arguments);
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.code() == Some(2) && said.contains(problem), "{arguments:?}: {said}");
     }
 }

@@ -34,7 +34,11 @@ pub(super) fn caption(chart: &WorkPrecision) -> Vec<String> {
             short(chart.duration),
             short(chart.real_time)
         ),
-        format!("Reference: {}; confirmed to {}.", chart.reference.trim_end_matches('.'), short(chart.reference_error)),
+        format!(
+            "Reference: {}; the two differ by {}.",
+            chart.reference.trim_end_matches('.'),
+            short(chart.reference_error)
+        ),
         chart.machine.clone(),
     ];
     let mut lines: Vec<_> = sentences.iter().flat_map(|text| wrap(text, CAPTION_SIZE, width)).collect();

@@ -66,7 +66,7 @@ fn section(body: &mut String, i: usize, chart: &WorkPrecision) -> Result<(), Cha
 
 fn caption(chart: &WorkPrecision) -> String {
     format!(
-        "{} units of time, shown by the app in {} s. Error budget: {}. Reference: {}; confirmed to {}. {}. Arithmetic in f64.",
+        "{} units of time, shown by the app in {} s. Error budget: {}. Reference: {}; the two differ by {}. {}. Arithmetic in f64.",
         short(chart.duration),
         short(chart.real_time),
         short(chart.budget),
