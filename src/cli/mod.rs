@@ -5,8 +5,13 @@ use std::{io, process::ExitCode};
 use clap::{Parser, Subcommand};
 use thiserror::Error;
 
-use crate::{creatures::FileError, lab::LabError, scenes::parameters::ParameterError};
+use crate::{
+    creatures::FileError,
+    lab::{GalleryError, LabError},
+    scenes::parameters::ParameterError,
+};
 
+mod chart;
 mod choose;
 mod headless;
 mod list;
@@ -43,6 +48,8 @@ enum Command {
     Run(run::RunArguments),
     /// Find the cheapest method and step whose error a scene can afford
     Choose(choose::ChooseArguments),
+    /// Measure what accuracy costs with every method, and draw it
+    Chart(chart::ChartArguments),
 }
 
 /// How a command ended.
@@ -66,6 +73,9 @@ pub enum CliError {
     /// A scene cannot be measured.
     #[error(transparent)]
     Lab(#[from] LabError),
+    /// Charts cannot be kept.
+    #[error(transparent)]
+    Gallery(#[from] GalleryError),
     /// Flags contradict the scene or each other.
     #[error("{0}")]
     Usage(String),
@@ -100,6 +110,7 @@ pub fn main() -> ExitCode {
         Some(Command::Shot(arguments)) => shot::shot(&arguments),
         Some(Command::Run(arguments)) => run::run(&arguments),
         Some(Command::Choose(arguments)) => choose::choose(&arguments),
+        Some(Command::Chart(arguments)) => chart::chart(&arguments),
     };
     match outcome {
         Ok(Outcome::Done) => ExitCode::SUCCESS,

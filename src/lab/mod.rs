@@ -1,21 +1,30 @@
 //! The laboratory: references, work-precision runs, stability limits and their charts.
 
 mod cache;
+pub mod chart;
 mod choose;
 mod error;
+mod gallery;
 mod hash;
 mod machine;
+mod page;
+mod partial;
 mod problem;
 mod record;
 mod reference;
 mod run;
 mod sweep;
+mod table;
 
 pub use cache::Cache;
 pub use choose::{Candidate, Choice, Search, cheapest, choose, frontier};
 pub use error::LabError;
+pub use gallery::{Gallery, GalleryError};
+pub use page::page;
+pub use partial::Partial;
 pub use problem::{Problem, ProblemBody};
 pub use record::{Errors, Point, Setting, WorkPrecision};
 pub use reference::{Reference, StickSlip};
 pub use run::measure;
-pub use sweep::{SweepOptions, sweep, work_precision};
+pub use sweep::{SweepOptions, resumed_sweep, sweep, work_precision};
+pub use table::{COLUMNS, csv};

@@ -57,6 +57,7 @@ pub struct WorkPrecision {
     /// All runs, method by method and from the largest step down.
     pub points: Vec<Point>,
     /// The stability limit of each method's step; infinite where none makes it unstable.
+    #[serde(with = "limits")]
     pub limits: Vec<(Method, f64)>,
     /// The scene's own setting.
     pub setting: Setting,
@@ -68,4 +69,20 @@ pub struct WorkPrecision {
     pub reference_error: f64,
     /// Processor and commit, in words.
     pub machine: String,
+}
+
+/// Limits as they are written: JSON has no infinity, so a method without a limit has null.
+mod limits {
+    use serde::{Deserialize, Deserializer, Serializer};
+
+    use super::Method;
+
+    pub(super) fn serialize<S: Serializer>(limits: &[(Method, f64)], serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_seq(limits.iter().map(|&(method, limit)| (method, limit.is_finite().then_some(limit))))
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<(Method, f64)>, D::Error> {
+        let limits = Vec::<(Method, Option<f64>)>::deserialize(deserializer)?;
+        Ok(limits.into_iter().map(|(method, limit)| (method, limit.unwrap_or(f64::INFINITY))).collect())
+    }
 }

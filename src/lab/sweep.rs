@@ -1,5 +1,7 @@
 //! Speed against accuracy: every method over many steps, from its stability edge downwards.
 
+use core::convert::Infallible;
+
 use crate::{
     mechanics::integrators::{Method, StickRule},
     scenes::{DOCUMENT_DT, LoadedScene},
@@ -30,7 +32,8 @@ impl Default for SweepOptions {
 const LEAST_STEPS: usize = 8;
 
 impl SweepOptions {
-    fn repeats(&self) -> usize {
+    /// How often a point is timed.
+    pub fn repeats(&self) -> usize {
         if self.quick { 3 } else { 20 }
     }
 
@@ -65,14 +68,30 @@ pub fn sweep(
     options: &SweepOptions,
     progress: &mut dyn FnMut(usize, usize, &str),
 ) -> WorkPrecision {
+    let measure = &mut |setting| Ok::<_, Infallible>(measure(problem, reference, setting, options.repeats()));
+    let Ok(chart) = resumed_sweep(problem, reference, options, measure, progress);
+    chart
+}
+
+/// As [`sweep`], with points by `measure`, which may know some of them already; see [`measure`].
+///
+/// # Errors
+/// The first one of `measure`.
+pub fn resumed_sweep<E>(
+    problem: &Problem,
+    reference: &Reference,
+    options: &SweepOptions,
+    measure: &mut dyn FnMut(Setting) -> Result<Point, E>,
+    progress: &mut dyn FnMut(usize, usize, &str),
+) -> Result<WorkPrecision, E> {
     let plan = plan(problem, options, progress);
     let mut points: Vec<Point> = Vec::with_capacity(plan.len());
     for (done, &setting) in plan.iter().enumerate() {
         progress(done, plan.len(), &format!("{} with dt {}", setting.method.name(), setting.dt));
-        points.push(measure(problem, reference, setting, options.repeats()));
+        points.push(measure(setting)?);
     }
     progress(plan.len(), plan.len(), "done");
-    WorkPrecision {
+    Ok(WorkPrecision {
         scene: problem.name.clone(),
         title: problem.title.clone(),
         duration: problem.duration,
@@ -84,7 +103,7 @@ pub fn sweep(
         reference: Reference::WORDS.into(),
         reference_error: reference.error(),
         machine: machine(),
-    }
+    })
 }
 
 /// The document's setting: half a millisecond, semi-implicit Euler.

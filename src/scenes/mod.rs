@@ -19,6 +19,7 @@ pub use file::{Budget, Camera, DOCUMENT_DT, FIELD_OF_VIEW, Placement, Props, Sce
 pub use load::{LoadedScene, load, load_creature, read_scene};
 pub use race::{Ghost, Runner};
 pub use save::save;
+pub(crate) use save::write;
 pub use spawn::{CurrentScene, SceneBodies, SceneMember, open};
 pub use switch::{SceneChange, SceneProblem, ScenesPlugin};
 #[cfg(feature = "window")]

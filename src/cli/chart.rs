@@ -1,0 +1,142 @@
+//! `wriggle chart`: what accuracy costs in each scene, drawn.
+
+use std::{
+    collections::BTreeMap,
+    io::{self, IsTerminal, Write},
+    path::PathBuf,
+};
+
+use clap::Args;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+use super::{CliError, Outcome};
+use crate::{
+    creatures::library::{self, SCENE},
+    lab::{Gallery, GalleryError, LabError, Problem, SweepOptions, WorkPrecision, measure, resumed_sweep},
+    mechanics::integrators::Method,
+    scenes::{self, LoadedScene},
+};
+
+#[derive(Args, Debug)]
+pub(super) struct ChartArguments {
+    /// Scenes or creatures by name, or files [default: every scene that `wriggle list` shows]
+    scene: Vec<String>,
+    /// The folder for NAME.csv, NAME.svg, NAME.png and NAME.json of each scene and for index.html; made if it is not there
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+    /// Fewer steps of each method and fewer timed runs
+    #[arg(long)]
+    quick: bool,
+}
+
+pub(super) fn chart(arguments: &ChartArguments) -> Result<Outcome, CliError> {
+    let scenes = loaded(&arguments.scene)?;
+    let gallery = Gallery::open(&arguments.out)?;
+    let options = SweepOptions { quick: arguments.quick, ..SweepOptions::default() };
+    let mut out = io::stdout().lock();
+    for (name, scene) in &scenes {
+        for warning in &scene.warnings {
+            eprintln!("warning: {warning}");
+        }
+        let problem = Problem::of(scene)?;
+        let key = key(&problem, &options);
+        let finished = gallery.finished(name, &key);
+        let is_new = finished.is_none();
+        let chart = match finished {
+            Some(chart) => chart,
+            None => match measured(&problem, &options, &gallery, &key) {
+                // A scene that has no reference leaves the others their charts.
+                Err(CliError::Lab(error @ LabError::Unsupported { .. })) => {
+                    eprintln!("{error}; it gets no chart");
+                    continue;
+                }
+                chart => chart?,
+            },
+        };
+        // What is read from JSON may differ in its last bits, so a table that is there is left as it is.
+        if is_new || !gallery.is_drawn(name) {
+            gallery.keep(&key, &chart)?;
+            gallery.write_page()?;
+        }
+        let how = if is_new { "measured" } else { "measured before" };
+        let file = gallery.file(name, "svg");
+        writeln!(out, "{name}: {} runs, {how}; {}", chart.points.len(), file.display()).map_err(CliError::stdout)?;
+    }
+    let page = gallery.write_page()?;
+    writeln!(out, "all charts: {}", page.display()).and_then(|()| out.flush()).map_err(CliError::stdout)?;
+    Ok(Outcome::Done)
+}
+
+/// Reads all scenes before any is measured, by the names that their files will have.
+fn loaded(names: &[String]) -> Result<BTreeMap<String, LoadedScene>, CliError> {
+    let all: Vec<String> = match names {
+        [] => library::list(SCENE).into_keys().collect(),
+        names => names.to_vec(),
+    };
+    let mut scenes = BTreeMap::new();
+    for name in &all {
+        let scene = scenes::load(name)?;
+        let stem = scene.source.stem();
+        if let Some(other) = scenes.insert(stem.clone(), scene) {
+            return Err(CliError::Usage(format!(
+                "{name}: the files of its chart would have the same names as those of {}; give `{stem}` once",
+                other.source
+            )));
+        }
+    }
+    Ok(scenes)
+}
+
+/// What a chart depends on: a chart is measured again when this has changed.
+fn key(problem: &Problem, options: &SweepOptions) -> String {
+    let Problem { title, setting, time_scale, budget, .. } = problem;
+    let methods = Method::ALL.map(Method::name).join(" ");
+    let version = env!("CARGO_PKG_VERSION");
+    let quick = options.quick;
+    format!(
+        "{:032x} {title:?} {setting:?} scale {time_scale} budget {budget} quick {quick} {methods} {version}",
+        problem.hash()
+    )
+}
+
+fn measured(
+    problem: &Problem,
+    options: &SweepOptions,
+    gallery: &Gallery,
+    key: &str,
+) -> Result<WorkPrecision, CliError> {
+    let bar = progress(&problem.name);
+    bar.set_message("reference");
+    bar.tick();
+    let reference = options.cache.reference(problem)?;
+    let mut partial = gallery.partial(&problem.name, key)?;
+    if !partial.is_empty() {
+        bar.suspend(|| eprintln!("{}: going on after {} runs", problem.name, partial.len()));
+    }
+    let mut point = |setting| match partial.known(setting) {
+        Some(point) => Ok(point),
+        None => {
+            let point = measure(problem, &reference, setting, options.repeats());
+            partial.push(point)?;
+            Ok::<_, GalleryError>(point)
+        }
+    };
+    let chart = resumed_sweep(problem, &reference, options, &mut point, &mut |done, all, what| {
+        bar.set_length(all as u64);
+        bar.set_position(done as u64);
+        bar.set_message(what.to_owned());
+    })?;
+    bar.finish_and_clear();
+    Ok(chart)
+}
+
+/// Shown on a terminal only.
+fn progress(name: &str) -> ProgressBar {
+    if !io::stderr().is_terminal() {
+        return ProgressBar::hidden();
+    }
+    let style = ProgressStyle::with_template("{prefix}  {wide_bar} {pos}/{len} runs  {msg}")
+        .unwrap_or_else(|_| ProgressStyle::default_bar());
+    let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr()).with_style(style);
+    bar.with_prefix(name.to_owned())
+}

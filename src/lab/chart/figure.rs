@@ -1,0 +1,280 @@
+//! Draws the panels of a chart.
+
+use super::{
+    labels::{Placer, around},
+    look::{regular, star},
+    plot::{Panel, Plot},
+    scale::{Tick, short},
+    series::{Cost, Series, error},
+    shapes::{Anchor, Color, Picture, Place, Rect, Text},
+    tracks::Track,
+};
+use crate::lab::WorkPrecision;
+
+/// The radius of a marker.
+pub(super) const MARKER: f64 = 5.5;
+/// The radius of the star of the scene's setting.
+pub(super) const STAR: f64 = 13.0;
+/// The radius of the circle of the document's setting.
+pub(super) const CIRCLE: f64 = 12.0;
+/// The em of what is written at marks and lines.
+const SMALL: f64 = 12.5;
+const TICK_SIZE: f64 = 14.0;
+
+pub(super) const BLACK: Color = [0; 3];
+pub(super) const GREY: Color = [0x66; 3];
+pub(super) const BUDGET: Color = [0xdf, 0xef, 0xe6];
+const BUDGET_EDGE: Color = [0x3d, 0x7a, 0x5c];
+const GRID: Color = [0xdc; 3];
+const FAINT_GRID: Color = [0xf0; 3];
+pub(super) const GUIDE: Color = [0x9a; 3];
+pub(super) const STAR_FILL: Color = [0xf0, 0xe4, 0x42];
+
+/// Draws a panel; the first one has the axis of errors.
+pub(super) fn draw(picture: &mut Picture, chart: &WorkPrecision, plot: &Plot, panel: &Panel, first: bool) {
+    let mut placer = Placer::new(panel.frame);
+    let levels = levels(chart, panel);
+    if let Some(budget) = levels.iter().find(|level| level.band) {
+        picture.area(Rect { top: budget.y, ..panel.frame }.corners(), BUDGET, 1.0);
+    }
+    grid(picture, plot, panel, first);
+    strip(picture, plot, panel, first);
+    for level in &levels {
+        picture.line([(panel.frame.left, level.y), (panel.frame.right, level.y)], level.color, 1.5);
+    }
+    for guide in &panel.guides {
+        picture.dashed(&[guide.from, guide.to], &[9.0, 6.0], GUIDE, 1.3);
+        placer.take_line(&[guide.from, guide.to]);
+    }
+    if let Some(x) = panel.real_time {
+        picture.line([(x, panel.frame.top), (x, panel.frame.bottom)], GREY, 2.2);
+        placer.take(Rect { left: x - 3.0, right: x + 3.0, ..panel.frame });
+    }
+    let frame = panel.frame.corners();
+    picture.line([frame[0], frame[1], frame[2], frame[3], frame[0]], [0x80; 3], 1.2);
+
+    let series = || plot.series.iter().map(|series| (series, places(panel, series)));
+    for (series, places) in series() {
+        picture.dashed(&places, series.look().dashes, series.look().color, 1.9);
+        placer.take_line(&places);
+        places.iter().for_each(|&place| placer.take(Rect::around(place, MARKER + 1.0)));
+    }
+    highlights(picture, panel, &mut placer);
+    for (series, places) in series() {
+        if panel.cost == Cost::Seconds {
+            medians(picture, panel, &mut placer, series, &places);
+        }
+        places.iter().for_each(|&place| series.look().mark(picture, place, MARKER));
+    }
+    words(picture, panel, &mut placer, &levels);
+    steps(picture, plot, panel, &mut placer);
+}
+
+fn places(panel: &Panel, series: &Series) -> Vec<Place> {
+    let runs = series.good.iter().filter_map(|point| Some((panel.cost.of(point), error(point)?)));
+    runs.map(|(cost, error)| panel.place(cost, error)).collect()
+}
+
+/// An error that means something.
+struct Level {
+    y: f64,
+    text: String,
+    color: Color,
+    /// Whether all below it is shaded.
+    band: bool,
+}
+
+/// What the scene can afford, and how far the reference can be trusted.
+fn levels(chart: &WorkPrecision, panel: &Panel) -> Vec<Level> {
+    let budget = (chart.budget, "good enough: error below", BUDGET_EDGE, true);
+    let reference = (chart.reference_error, "the reference itself is sure to", GREY, false);
+    let shown = [budget, reference].into_iter().filter(|(error, ..)| panel.y.shows(*error));
+    shown
+        .map(|(error, text, color, band)| {
+            let text = format!("{text} {}", short(error));
+            Level { y: panel.y.place(error), text, color, band }
+        })
+        .collect()
+}
+
+fn grid(picture: &mut Picture, plot: &Plot, panel: &Panel, first: bool) {
+    let frame = panel.frame;
+    let color = |tick: &Tick| if tick.digit == 1 { GRID } else { FAINT_GRID };
+    for tick in panel.x.ticks() {
+        let x = panel.x.place(tick.value);
+        picture.line([(x, frame.top), (x, frame.bottom)], color(&tick), 1.0);
+        if tick.written {
+            picture.line([(x, frame.bottom), (x, frame.bottom + 5.0)], [0x80; 3], 1.2);
+            number(picture, tick, (x, frame.bottom + 22.0), Anchor::Middle);
+        }
+    }
+    for tick in panel.y.ticks() {
+        let y = panel.y.place(tick.value);
+        picture.line([(frame.left, y), (frame.right, y)], color(&tick), 1.0);
+        if tick.written && first {
+            picture.line([(frame.left - 5.0, y), (frame.left, y)], [0x80; 3], 1.2);
+            number(picture, tick, (frame.left - 9.0, y + 5.0), Anchor::End);
+        }
+    }
+    if plot.exact && first {
+        let y = panel.place(1.0, 0.0).1;
+        picture.text(Text::new("0", (frame.left - 9.0, y + 5.0), TICK_SIZE).anchored(Anchor::End));
+    }
+    let title = match panel.cost {
+        Cost::Evaluations => "force evaluations",
+        Cost::Seconds => "seconds: shortest run, bar to the median",
+    };
+    let middle = (frame.left + frame.right) / 2.0;
+    picture.text(Text::new(title, (middle, frame.bottom + 46.0), 16.0).anchored(Anchor::Middle));
+    if first {
+        let at = (frame.left - 66.0, (frame.top + frame.bottom) / 2.0);
+        let title = Text::new("error: largest distance from the reference, in lengths", at, 16.0);
+        picture.text(Text { upwards: true, ..title }.anchored(Anchor::Middle));
+    }
+}
+
+/// Writes a digit times a power of ten. The exponent is a text of its own, because the bundled font has no raised minus.
+fn number(picture: &mut Picture, tick: Tick, (x, y): Place, anchor: Anchor) {
+    let base = match tick.digit {
+        1 => "10".to_owned(),
+        digit => format!("{digit}·10"),
+    };
+    let base = Text::new(base, (x, y), TICK_SIZE);
+    let power = Text::new(tick.exponent.to_string().replace('-', "−"), (x, y - 6.0), 12.0);
+    let width = |text: &Text| text.bounds().right - text.bounds().left;
+    let (base_width, power_width) = (width(&base), width(&power));
+    let split = match anchor {
+        Anchor::Start => x + base_width,
+        Anchor::Middle => x + (base_width - power_width) / 2.0,
+        Anchor::End => x - power_width,
+    };
+    picture.text(Text { at: (split, y), ..base }.anchored(Anchor::End));
+    picture.text(Text { at: (split + 1.0, y - 6.0), ..power });
+}
+
+fn strip(picture: &mut Picture, plot: &Plot, panel: &Panel, first: bool) {
+    let strip = panel.strip;
+    picture.area(strip.corners(), [0xf6; 3], 1.0);
+    if first {
+        let middle = (strip.top + strip.bottom) / 2.0;
+        for (text, y) in [("blew up ×", middle - 3.0), ("limit of dt |", middle + 13.0)] {
+            picture.text(Text::new(text, (strip.left - 9.0, y), SMALL).anchored(Anchor::End));
+        }
+    }
+    for track in &panel.tracks {
+        let y = strip.top + 4.0 + (track.row as f64 + 0.5) * Track::HEIGHT;
+        let look = plot.series[track.series].look();
+        let all = || track.crosses.iter().chain(&track.edge).copied();
+        let (left, right) = (all().fold(f64::INFINITY, f64::min), all().fold(f64::NEG_INFINITY, f64::max));
+        picture.dashed(&[(left, y), (right, y)], look.dashes, look.color, 1.0);
+        look.mark(picture, (left - 15.0, y), MARKER - 1.0);
+        for &x in &track.crosses {
+            cross(picture, (x, y), look.color);
+        }
+        if let Some(x) = track.edge {
+            picture.line([(x, y - 8.0), (x, y + 8.0)], look.color, 2.2);
+            let at = (x + Track::LABEL_GAP - 5.0, y + 4.5);
+            picture.text(Text::new(track.label.clone(), at, Track::LABEL_SIZE).colored(look.ink()));
+        }
+    }
+}
+
+pub(super) fn cross(picture: &mut Picture, (x, y): Place, color: Color) {
+    const ARM: f64 = 5.0;
+    picture.line([(x - ARM, y - ARM), (x + ARM, y + ARM)], color, 2.2);
+    picture.line([(x - ARM, y + ARM), (x + ARM, y - ARM)], color, 2.2);
+}
+
+fn medians(picture: &mut Picture, panel: &Panel, placer: &mut Placer, series: &Series, places: &[Place]) {
+    for (point, &(x, y)) in series.good.iter().zip(places) {
+        let end = panel.place(point.median_seconds, 1.0).0;
+        if point.median_seconds > point.seconds && end > x {
+            picture.line([(x, y), (end, y)], series.look().color, 1.2);
+            picture.line([(end, y - 4.0), (end, y + 4.0)], series.look().color, 1.2);
+            placer.take(Rect { left: x, top: y - 4.0, right: end + 1.0, bottom: y + 4.0 });
+        }
+    }
+}
+
+fn highlights(picture: &mut Picture, panel: &Panel, placer: &mut Placer) {
+    if let Some(place) = panel.setting {
+        draw_star(picture, place);
+        placer.take(Rect::around(place, STAR));
+    }
+    if let Some(place) = panel.document {
+        // Where both are the same, the circle goes around the star.
+        let radius = if panel.setting == Some(place) { STAR + 4.0 } else { CIRCLE };
+        draw_circle(picture, place, radius);
+        placer.take(Rect::around(place, radius));
+    }
+}
+
+pub(super) fn draw_star(picture: &mut Picture, place: Place) {
+    picture.area(star(place, STAR + 3.0), BLACK, 1.0);
+    picture.area(star(place, STAR), STAR_FILL, 1.0);
+}
+
+pub(super) fn draw_circle(picture: &mut Picture, (x, y): Place, radius: f64) {
+    let mut ring: Vec<_> = regular(48, 0.0, radius).into_iter().map(|(dx, dy)| (x + dx, y + dy)).collect();
+    ring.push(ring[0]);
+    picture.line(ring, BLACK, 2.0);
+}
+
+/// What lines and bands mean, written at them.
+fn words(picture: &mut Picture, panel: &Panel, placer: &mut Placer, levels: &[Level]) {
+    let frame = panel.frame;
+    for level in levels {
+        let places = [(frame.right - 8.0, Anchor::End), (frame.left + 8.0, Anchor::Start)];
+        let candidates = places.into_iter().flat_map(|(x, anchor)| {
+            let text = |y| Text::new(level.text.clone(), (x, y), SMALL).anchored(anchor).colored(level.color);
+            [text(level.y + 17.0), text(level.y - 6.0)]
+        });
+        write(picture, placer.place(candidates, true));
+    }
+    if let Some(x) = panel.real_time {
+        let candidates = [(x - 7.0, Anchor::End), (x + 7.0, Anchor::Start)].into_iter().flat_map(|(x, anchor)| {
+            (1..20).map(move |i| Text::new("real time", (x, frame.top + 18.0 * f64::from(i)), SMALL).anchored(anchor))
+        });
+        write(picture, placer.place(candidates, true));
+    }
+    for guide in &panel.guides {
+        let along = |part: f64| {
+            let (from, to) = (guide.from, guide.to);
+            (from.0 + part * (to.0 - from.0), from.1 + part * (to.1 - from.1))
+        };
+        let parts = (1..20).map(|i| 1.0 - 0.04 * f64::from(i));
+        let text = |part| {
+            let (x, y) = along(part);
+            let text = Text::new(format!("order {}", guide.order), (x + 6.0, y - 4.0), SMALL).colored(GREY);
+            [text.clone(), Text { at: (x - 6.0, y + 13.0), ..text }.anchored(Anchor::End)]
+        };
+        write(picture, placer.place(parts.flat_map(text), false));
+    }
+}
+
+/// Writes a text that has found room, on a ground that lets what lies below shine through.
+fn write(picture: &mut Picture, text: Option<Text>) {
+    if let Some(text) = text {
+        picture.area(text.bounds().corners(), [0xff; 3], 0.6);
+        picture.text(text);
+    }
+}
+
+/// Writes dt at the first and the last point of each series, then at as many between as have room.
+fn steps(picture: &mut Picture, plot: &Plot, panel: &Panel, placer: &mut Placer) {
+    let label = |series: &Series, i: usize| {
+        Text::new(short(series.good[i].setting.dt), (0.0, 0.0), SMALL).colored(series.look().ink())
+    };
+    let all: Vec<_> = plot.series.iter().map(|series| (series, places(panel, series))).collect();
+    let mut label_at = |series: &Series, places: &[Place], i: usize, over_lines| {
+        let candidates = around(&label(series, i), places[i], MARKER);
+        write(picture, placer.place(candidates, over_lines));
+    };
+    let ends = |places: &[Place]| [0, places.len() - 1].into_iter().take(places.len().min(2)).collect::<Vec<_>>();
+    for (series, places) in all.iter().filter(|(_, places)| !places.is_empty()) {
+        ends(places).into_iter().for_each(|i| label_at(series, places, i, true));
+    }
+    for (series, places) in all.iter().filter(|(_, places)| places.len() > 2) {
+        (1..places.len() - 1).for_each(|i| label_at(series, places, i, false));
+    }
+}

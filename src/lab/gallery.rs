@@ -1,0 +1,156 @@
+//! A folder of charts: for each scene its numbers, its table and its pictures, and one page for all.
+
+use std::{
+    fs, io,
+    path::{Path, PathBuf},
+};
+
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+use super::{
+    Partial, WorkPrecision,
+    chart::{self, ChartError},
+    csv,
+    machine::machine,
+    page,
+};
+use crate::scenes::write;
+
+/// A folder of charts that can be written to.
+#[derive(Clone, Debug)]
+pub struct Gallery {
+    folder: PathBuf,
+}
+
+/// Why charts cannot be kept.
+#[derive(Debug, Error)]
+pub enum GalleryError {
+    /// The folder is none, or it cannot be written to.
+    #[error("{}: {problem}; give a folder that can be written to, or the name of a new one", folder.display())]
+    Folder {
+        /// Which.
+        folder: PathBuf,
+        /// What is wrong with it.
+        problem: String,
+    },
+    /// A file cannot be written.
+    #[error("could not write to {}: {error}", file.display())]
+    File {
+        /// Which.
+        file: PathBuf,
+        /// What the system says.
+        error: io::Error,
+    },
+    /// A chart cannot be drawn.
+    #[error(transparent)]
+    Chart(#[from] ChartError),
+}
+
+/// A chart as `NAME.json` has it.
+#[derive(Serialize, Deserialize)]
+struct Kept<Chart> {
+    /// What was measured, and how: a chart is measured again when this has changed.
+    problem: String,
+    #[serde(flatten)]
+    chart: Chart,
+}
+
+impl Gallery {
+    /// Opens a folder, and makes it if it is not there.
+    ///
+    /// # Errors
+    /// If it is no folder or cannot be written to, so that this is known before anything is measured.
+    pub fn open(folder: impl Into<PathBuf>) -> Result<Self, GalleryError> {
+        let folder = folder.into();
+        let problem = if folder.as_os_str().is_empty() {
+            Some("is no name of a folder".into())
+        } else if folder.exists() && !folder.is_dir() {
+            Some("is no folder".into())
+        } else {
+            let tried = fs::create_dir_all(&folder).and_then(|()| tempfile::tempfile_in(&folder));
+            tried.err().map(|error| format!("cannot be written to ({error})"))
+        };
+        match problem {
+            Some(problem) => Err(GalleryError::Folder { folder, problem }),
+            None => Ok(Self { folder }),
+        }
+    }
+
+    /// The file of a scene that ends in `suffix`.
+    pub fn file(&self, scene: &str, suffix: &str) -> PathBuf {
+        self.folder.join(format!("{scene}.{suffix}"))
+    }
+
+    /// The chart of a scene, if it was kept whole and with the same `problem`.
+    pub fn finished(&self, scene: &str, problem: &str) -> Option<WorkPrecision> {
+        let kept = read(&self.file(scene, "json"))?;
+        (kept.problem == problem && kept.chart.scene == scene).then_some(kept.chart)
+    }
+
+    /// Whether the table and the pictures of a scene are there.
+    pub fn is_drawn(&self, scene: &str) -> bool {
+        ["csv", "svg", "png"].iter().all(|suffix| self.file(scene, suffix).is_file())
+    }
+
+    /// Goes on with the sweep of a scene that was interrupted, or begins one.
+    ///
+    /// # Errors
+    /// If the file of its points cannot be written.
+    pub fn partial(&self, scene: &str, problem: &str) -> Result<Partial, GalleryError> {
+        Partial::open(self.part(scene), problem, machine())
+    }
+
+    fn part(&self, scene: &str) -> PathBuf {
+        self.file(scene, "part.jsonl")
+    }
+
+    /// Keeps a chart as `NAME.csv`, `NAME.svg`, `NAME.png` and `NAME.json`. The last is written last: where it is, the chart is whole.
+    ///
+    /// # Errors
+    /// If the chart cannot be drawn or a file cannot be written; what was there before is still there then.
+    pub fn keep(&self, problem: &str, chart: &WorkPrecision) -> Result<(), GalleryError> {
+        self.write(&self.file(&chart.scene, "csv"), csv(chart).as_bytes())?;
+        self.write(&self.file(&chart.scene, "svg"), chart::svg(chart)?.as_bytes())?;
+        self.write(&self.file(&chart.scene, "png"), &chart::png(chart)?)?;
+        let file = self.file(&chart.scene, "json");
+        let json = serde_json::to_vec_pretty(&Kept { problem: problem.into(), chart })
+            .map_err(|error| GalleryError::File { file: file.clone(), error: error.into() })?;
+        self.write(&file, &json)?;
+        // What was left of an interrupted sweep is in the chart now.
+        match fs::remove_file(self.part(&chart.scene)) {
+            Err(error) if error.kind() != io::ErrorKind::NotFound => {
+                Err(GalleryError::File { file: self.part(&chart.scene), error })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Writes `index.html` with all charts of the folder, by name, and says where it is.
+    ///
+    /// # Errors
+    /// If a chart cannot be drawn or the file cannot be written.
+    pub fn write_page(&self) -> Result<PathBuf, GalleryError> {
+        let mut charts: Vec<_> = fs::read_dir(&self.folder)
+            .into_iter()
+            .flatten()
+            .flatten()
+            .map(|entry| entry.path())
+            .filter(|path| path.extension().is_some_and(|extension| extension == "json"))
+            .filter_map(|path| Some(read(&path)?.chart))
+            .collect();
+        charts.sort_by(|a, b| a.scene.cmp(&b.scene));
+        let file = self.folder.join("index.html");
+        self.write(&file, page(&charts)?.as_bytes())?;
+        Ok(file)
+    }
+
+    fn write(&self, file: &Path, bytes: &[u8]) -> Result<(), GalleryError> {
+        write(file, bytes).map_err(|error| GalleryError::File { file: file.to_owned(), error })
+    }
+}
+
+/// A chart that was kept; a damaged or foreign file is none.
+fn read(file: &Path) -> Option<Kept<WorkPrecision>> {
+    serde_json::from_slice(&fs::read(file).ok()?).ok()
+}

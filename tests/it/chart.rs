@@ -1,0 +1,478 @@
+//! Work-precision charts: where things are drawn, what is written, and what data may be.
+
+use std::{
+    fs,
+    path::Path,
+    process::{Command, Output},
+};
+
+use ab_glyph::{Font, FontRef};
+use tempfile::TempDir;
+use wriggle::{
+    lab::{
+        COLUMNS, Errors, Gallery, Point, Setting, WorkPrecision,
+        chart::{self, Cost, Guide, Look, Panel, Picture, Place, Rect, Shape, Text},
+        csv, page,
+    },
+    mechanics::integrators::{Method, StickRule},
+};
+
+/// A run of which the error follows from its step.
+fn point(method: Method, stick: StickRule, dt: f64, evaluations: u64, error: Option<f64>) -> Point {
+    let steps = (20.0 / dt).ceil() as u64;
+    let seconds = 4e-8 * (steps * evaluations) as f64;
+    Point {
+        setting: Setting { method, stick, dt },
+        steps,
+        evaluations: steps * evaluations,
+        seconds,
+        median_seconds: 1.15 * seconds,
+        errors: error.map(|largest| Errors { largest, rms: largest / 3.0, distance: largest / 2.0 }),
+    }
+}
+
+fn empty() -> WorkPrecision {
+    WorkPrecision {
+        scene: "garden".into(),
+        title: "Garden".into(),
+        duration: 20.0,
+        real_time: 20.0 / 3.0,
+        points: Vec::new(),
+        limits: Method::ALL.map(|method| (method, f64::INFINITY)).to_vec(),
+        setting: Setting { method: Method::RungeKutta4, stick: StickRule::InStages, dt: 0.05 },
+        budget: 0.0089,
+        reference: "DOP853 with located events, confirmed by Gauss collocation".into(),
+        reference_error: 2.3e-12,
+        machine: "AMD EPYC 7B13, one thread; Wriggle 0.1.0 (2d644c7), release build".into(),
+    }
+}
+
+/// A chart as a sweep of every method would give it.
+fn full() -> WorkPrecision {
+    let mut chart = empty();
+    for (i, method) in Method::ALL.into_iter().enumerate() {
+        let order = f64::from(method.about().order);
+        let evaluations = method.about().evaluations.unwrap_or(3);
+        let limit = [0.7, 0.9, 1.1, 1.05, 0.72, 1.6, f64::INFINITY][i % 7];
+        chart.limits[i].1 = limit;
+        let sticks: &[_] = match order as u32 {
+            2.. => &[StickRule::InStages, StickRule::EndOfStep],
+            _ => &[StickRule::InStages],
+        };
+        for &stick in sticks {
+            let order = if stick == StickRule::EndOfStep { 1.0 } else { order };
+            let largest = if limit.is_finite() { limit } else { 1.0 };
+            for dt in [2.0, 1.4, 0.98, 0.5, 0.25, 0.125, 0.05, 0.02, 0.005].map(|part| part * largest) {
+                let noise = 1.0 + 0.3 * libm::sin(1e3 * dt + i as f64);
+                let error = (0.1 + 0.07 * i as f64) * libm::pow(dt, order) * noise;
+                let blown = dt >= limit;
+                chart.points.push(point(method, stick, dt, evaluations, (!blown).then_some(error)));
+            }
+        }
+    }
+    chart.points.push(point(Method::SemiImplicitEuler, StickRule::InStages, 0.0005, 1, Some(1e-4)));
+    chart.points.push(point(Method::RungeKutta4, StickRule::InStages, 0.05, 4, Some(6e-6)));
+    chart
+}
+
+/// One run only.
+fn one() -> WorkPrecision {
+    let mut chart = empty();
+    chart.points.push(point(Method::RungeKutta4, StickRule::InStages, 0.05, 4, Some(6e-6)));
+    chart
+}
+
+/// Some runs without any error, a reference that is no better than the best runs, and a real time within reach.
+fn exact() -> WorkPrecision {
+    let mut chart = full();
+    chart.points.truncate(30);
+    for point in &mut chart.points[20..25] {
+        point.errors = Some(Errors { largest: 0.0, rms: 0.0, distance: 0.0 });
+    }
+    (chart.real_time, chart.reference_error) = (5e-4, 2e-5);
+    chart
+}
+
+/// Numbers as no run should give them.
+fn absurd() -> WorkPrecision {
+    let mut chart = full();
+    let values = [0.0, -1.0, f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e-300, 1e300, 5e-324];
+    for (i, point) in chart.points.iter_mut().enumerate() {
+        let value = values[i % values.len()];
+        match i / values.len() % 4 {
+            0 => point.setting.dt = value,
+            1 => (point.seconds, point.median_seconds) = (value, values[(i + 3) % values.len()]),
+            2 => (point.steps, point.evaluations) = (0, if value > 0.0 { u64::MAX } else { 0 }),
+            _ => point.errors = Some(Errors { largest: value, rms: value, distance: value }),
+        }
+    }
+    for (i, (_, limit)) in chart.limits.iter_mut().enumerate() {
+        *limit = values[i % values.len()];
+    }
+    (chart.budget, chart.duration, chart.real_time) = (f64::NAN, f64::INFINITY, 0.0);
+    (chart.reference_error, chart.setting.dt) = (f64::NAN, 0.0);
+    chart.title = "A title that goes on and on ".repeat(20);
+    chart.reference = "a\u{0}\n<b>&\"".repeat(200);
+    chart
+}
+
+/// A chart of a method that is exactly of order 2 in both costs.
+fn of_order_two() -> WorkPrecision {
+    let mut chart = empty();
+    let errors = (0..9).map(|i| 0.5 * libm::pow(0.25, f64::from(i)));
+    chart.points = errors
+        .zip([0.5, 0.25, 0.125, 0.0625, 0.03125, 0.015625, 0.0078125, 0.00390625, 0.001953125])
+        .map(|(error, dt)| point(Method::RungeKutta2, StickRule::InStages, dt, 2, Some(error)))
+        .collect();
+    chart
+}
+
+fn distance_from(guide: &Guide, (x, y): Place) -> f64 {
+    let (dx, dy) = (guide.to.0 - guide.from.0, guide.to.1 - guide.from.1);
+    ((x - guide.from.0) * dy - (y - guide.from.1) * dx).abs() / libm::hypot(dx, dy)
+}
+
+/// The middles of the polygons of a colour in an SVG, in pixels of the picture.
+fn marks(svg: &str, color: [u8; 3]) -> Vec<Place> {
+    let [r, g, b] = color;
+    let fill = format!("fill=\"#{r:02X}{g:02X}{b:02X}\"");
+    let polygons = svg.lines().filter(|line| line.starts_with("<polygon") && line.contains(&fill));
+    polygons
+        .map(|line| {
+            let points = line.split("points=\"").nth(1).unwrap().split('"').next().unwrap();
+            let points: Vec<Place> = points
+                .split_whitespace()
+                .map(|pair| pair.split_once(',').unwrap())
+                .map(|(x, y)| (x.parse::<f64>().unwrap() / 4.0, y.parse::<f64>().unwrap() / 4.0))
+                .collect();
+            let count = points.len() as f64;
+            let sum = points.iter().fold((0.0, 0.0), |sum, point| (sum.0 + point.0, sum.1 + point.1));
+            (sum.0 / count, sum.1 / count)
+        })
+        .collect()
+}
+
+fn within(frame: &Rect, (x, y): Place) -> bool {
+    frame.left <= x && x <= frame.right && frame.top <= y && y <= frame.bottom
+}
+
+#[test]
+fn a_method_of_order_two_is_drawn_on_its_guide_line() {
+    let chart = of_order_two();
+    let plot = chart::plot(&chart);
+    let drawn = marks(&chart::svg(&chart).unwrap(), Look::of(Method::RungeKutta2, StickRule::InStages).color);
+    for panel in &plot.panels {
+        assert_eq!(panel.guides.iter().map(|guide| guide.order).collect::<Vec<_>>(), [1, 2, 4]);
+        let [first, second, fourth] = [0, 1, 2].map(|i| &panel.guides[i]);
+        let here: Vec<_> = drawn.iter().copied().filter(|&place| within(&panel.frame, place)).collect();
+        assert_eq!(here.len(), chart.points.len());
+        for (&place, point) in here.iter().zip(&chart.points) {
+            let known = panel.place(panel.cost.of(point), point.errors.unwrap().largest);
+            assert!(libm::hypot(place.0 - known.0, place.1 - known.1) < 0.5, "{place:?} {known:?}");
+            assert!(distance_from(second, place) < 1.0, "{place:?} is off {second:?}");
+        }
+        let last = here[here.len() - 1];
+        assert!(distance_from(first, last) > 50.0 && distance_from(fourth, last) > 50.0);
+    }
+}
+
+#[test]
+fn axes_are_logarithmic_and_a_decade_is_a_decade() {
+    let panels = chart::plot(&full()).panels;
+    for Panel { x, y, frame, .. } in &panels {
+        let steps = |scale: &chart::LogScale| scale.place(100.0) - scale.place(10.0);
+        assert!((steps(x) - (x.place(1e-3) - x.place(1e-4))).abs() < 1e-9 && steps(x) > 0.0);
+        assert!(steps(y) < 0.0, "larger errors are higher");
+        for tick in x.ticks() {
+            assert!((frame.left..=frame.right).contains(&x.place(tick.value)));
+        }
+        for tick in y.ticks() {
+            assert!((frame.top..=frame.bottom).contains(&y.place(tick.value)));
+        }
+        assert!(y.ticks().iter().filter(|tick| tick.written).count() >= 3);
+    }
+    assert_eq!(panels.map(|panel| panel.cost), [Cost::Evaluations, Cost::Seconds]);
+}
+
+#[test]
+fn what_blew_up_stands_in_the_strip_at_the_cost_of_a_whole_run() {
+    let mut chart = of_order_two();
+    chart.limits = vec![(Method::RungeKutta2, 0.7)];
+    // Broken off after a few steps.
+    let blown = Point { steps: 7, evaluations: 14, ..point(Method::RungeKutta2, StickRule::InStages, 1.0, 2, None) };
+    let not_finite = point(Method::RungeKutta2, StickRule::InStages, 2.0, 2, Some(f64::NAN));
+    chart.points.splice(0..0, [not_finite, blown]);
+    let plot = chart::plot(&chart);
+    let picture = chart::picture(&chart);
+    let color = Look::of(Method::RungeKutta2, StickRule::InStages).color;
+    for panel in &plot.panels {
+        let [track] = &panel.tracks[..] else { panic!("{:?}", panel.tracks) };
+        let known = chart.points[2];
+        let cost = |dt| panel.cost.of(&known) * known.setting.dt / dt;
+        for (x, dt) in track.crosses.iter().zip([2.0, 1.0]) {
+            assert!((x - panel.x.place(cost(dt))).abs() < 1e-6, "{x} at dt {dt}");
+        }
+        assert_eq!(track.crosses.len(), 2);
+        assert!((track.edge.unwrap() - panel.x.place(cost(0.7))).abs() < 1e-6);
+        assert_eq!(track.label, "0.7");
+        let strokes = picture.shapes.iter().filter(|shape| {
+            matches!(shape, Shape::Line { points, color: drawn, .. }
+                if *drawn == color && points.len() == 2 && points.iter().all(|&place| within(&panel.strip, place)))
+        });
+        assert!(strokes.count() >= 2 * 2 + 1, "two strokes a cross and one for the limit");
+        assert!(panel.strip.bottom < panel.frame.top);
+    }
+    assert_eq!(plot.series[0].good.len(), 9, "and nowhere else");
+}
+
+#[test]
+fn settings_and_real_time_are_where_they_were_measured_or_said() {
+    let said = |chart: &WorkPrecision, text: &str| chart::picture(chart).texts().any(|drawn| drawn.text.contains(text));
+    let chart = full();
+    for panel in chart::plot(&chart).panels {
+        let near = |place: Option<Place>, setting: (Method, f64)| {
+            let found = |point: &&Point| (point.setting.method, point.setting.dt) == setting;
+            let point = chart.points.iter().find(found).unwrap();
+            assert_eq!(place, Some(panel.place(panel.cost.of(point), point.errors.unwrap().largest)));
+        };
+        near(panel.setting, (Method::RungeKutta4, 0.05));
+        near(panel.document, (Method::SemiImplicitEuler, 0.0005));
+        assert_eq!(panel.real_time, None);
+    }
+    assert!(said(&chart, "real time, 6.67 s:") && said(&chart, "further right"));
+    let close = WorkPrecision { real_time: 1e-3, ..full() };
+    let [evaluations, seconds] = chart::plot(&close).panels;
+    assert_eq!((evaluations.real_time, seconds.real_time), (None, Some(seconds.x.place(1e-3))));
+    // Between two runs, a setting lies on the line between them.
+    let mut between = of_order_two();
+    between.setting = Setting { method: Method::RungeKutta2, stick: StickRule::InStages, dt: 0.1 };
+    let panel = &chart::plot(&between).panels[0];
+    assert!(distance_from(&panel.guides[1], panel.setting.unwrap()) < 1e-6);
+    assert!(said(&empty(), "this scene: dt 0.05 was not measured"));
+}
+
+/// All glyphs are in the bundled font, nothing is smaller than 12 pixels, outside of the picture or over another text.
+fn check_texts(picture: &Picture) {
+    let font = FontRef::try_from_slice(epaint_default_fonts::UBUNTU_LIGHT).unwrap();
+    let all = Rect { left: 0.0, top: 0.0, right: Picture::WIDTH, bottom: Picture::HEIGHT };
+    let texts: Vec<&Text> = picture.texts().collect();
+    for (i, text) in texts.iter().enumerate() {
+        let bounds = text.bounds();
+        assert!(all.contains(&bounds), "{text:?} leaves the picture");
+        assert!(text.size >= 12.0, "{text:?} is small");
+        for letter in text.text.chars() {
+            assert_ne!(font.glyph_id(letter).0, 0, "no glyph for {letter:?} of {text:?}");
+        }
+        for other in &texts[..i] {
+            assert!(!bounds.overlaps(&other.bounds()), "{text:?} lies over {other:?}");
+        }
+    }
+}
+
+#[test]
+fn texts_never_overlap_and_every_letter_has_a_glyph() {
+    for chart in [full(), empty(), one(), exact(), of_order_two()] {
+        check_texts(&chart::picture(&chart));
+    }
+}
+
+#[test]
+fn first_and_last_step_of_a_lone_method_are_written() {
+    let picture = chart::picture(&of_order_two());
+    for dt in ["0.5", "0.00195"] {
+        assert_eq!(picture.texts().filter(|text| text.text == dt).count(), 2, "{dt} in both panels");
+    }
+}
+
+#[test]
+fn no_number_spoils_a_chart() {
+    for chart in [absurd(), empty(), one()] {
+        for shape in chart::picture(&chart).shapes {
+            let places = match shape {
+                Shape::Line { points, .. } | Shape::Area { points, .. } => points,
+                Shape::Text(text) => vec![text.at],
+            };
+            assert!(places.iter().all(|(x, y)| x.abs() < 1e5 && y.abs() < 1e5), "{places:?}");
+        }
+        let svg = chart::svg(&chart).unwrap();
+        assert!(!svg.contains(|letter: char| letter.is_control() && letter != '\n'));
+        page(&[chart]).unwrap();
+    }
+}
+
+#[test]
+fn methods_differ_in_shape_and_line_where_colours_repeat() {
+    let looks: Vec<_> = Method::ALL.into_iter().map(|method| Look::of(method, StickRule::InStages)).collect();
+    for (i, look) in looks.iter().enumerate() {
+        for other in &looks[..i] {
+            let mut grey = *look;
+            grey.color = other.color;
+            assert_ne!(grey, *other, "they can be told apart without colour");
+            assert!(look.color != other.color || look.dashes != other.dashes);
+        }
+    }
+    let end = Look::of(Method::ALL[0], StickRule::EndOfStep);
+    assert!(end.color == looks[0].color && end.dashes != looks[0].dashes);
+}
+
+#[test]
+fn a_table_reads_back_with_every_bit() {
+    let chart = WorkPrecision { scene: "my \"best\", so far".into(), ..full() };
+    let table = csv(&chart);
+    let mut lines = table.split_terminator("\r\n");
+    assert_eq!(lines.next().unwrap(), COLUMNS.join(","));
+    let mut rows = 0;
+    for (line, point) in lines.zip(&chart.points) {
+        let line = line.strip_prefix("\"my \"\"best\"\", so far\",").unwrap();
+        let cells: Vec<_> = line.split(',').collect();
+        assert_eq!(cells.len(), COLUMNS.len() - 1);
+        let number = |i: usize| cells[i].parse::<f64>().unwrap();
+        assert_eq!((cells[0], cells[1]), (point.setting.method.name(), format!("{:?}", point.setting.stick).as_str()));
+        assert_eq!(number(2), point.setting.dt);
+        assert_eq!((cells[3].parse(), cells[4].parse()), (Ok(point.steps), Ok(point.evaluations)));
+        assert_eq!((number(5), number(6)), (point.seconds, point.median_seconds));
+        match point.errors {
+            Some(errors) => {
+                assert_eq!([7, 8, 9].map(number), [errors.largest, errors.rms, errors.distance]);
+                assert_eq!(cells[10], "false");
+            }
+            None => assert_eq!(cells[7..], ["", "", "", "true"]),
+        }
+        rows += 1;
+    }
+    assert_eq!(rows, chart.points.len());
+}
+
+#[test]
+fn the_page_escapes_what_it_shows_and_needs_nothing_from_elsewhere() {
+    let bad = "<script>alert('1')</script> & \"more\"";
+    let chart = WorkPrecision {
+        scene: "a b\"c".into(),
+        title: bad.into(),
+        reference: bad.into(),
+        machine: bad.into(),
+        ..full()
+    };
+    let html = page(&[chart, empty()]).unwrap();
+    assert!(!html.contains("<script") && html.contains("&lt;script&gt;"));
+    assert!(html.contains("href=\"./a%20b%22c.csv\""));
+    for (at, _) in html.match_indices("http") {
+        assert!(html[at..].starts_with("http://www.w3.org/2000/svg\""), "{}", &html[at..at + 60]);
+    }
+    assert!(!html.contains("src=") && !html.contains("@import") && !html.contains("url("));
+    assert_eq!(html.matches("<svg").count(), 2);
+    assert_eq!(
+        html.matches("blew up</td>").count(),
+        full().points.iter().filter(|point| point.errors.is_none()).count()
+    );
+    assert!(page(&[]).unwrap().contains("No scene has been measured yet"));
+}
+
+fn files(folder: &Path) -> Vec<String> {
+    let mut names: Vec<_> =
+        fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn a_gallery_knows_what_it_has_measured() {
+    let folder = TempDir::new().unwrap();
+    let gallery = Gallery::open(folder.path().join("new/charts")).unwrap();
+    let chart = one();
+    assert!(gallery.finished("garden", "a").is_none());
+    gallery.partial("garden", "a").unwrap().push(chart.points[0]).unwrap();
+    gallery.keep("a", &chart).unwrap();
+    let kept = gallery.finished("garden", "a").unwrap();
+    assert_eq!(kept.limits, chart.limits, "infinite limits survive");
+    assert_eq!((kept.points.len(), kept.points[0].setting), (1, chart.points[0].setting));
+    assert!(gallery.is_drawn("garden") && !gallery.is_drawn("snake"));
+    assert!(gallery.finished("garden", "b").is_none() && gallery.finished("snake", "a").is_none());
+    let page = gallery.write_page().unwrap();
+    assert!(fs::read_to_string(&page).unwrap().contains("<h2>Garden</h2>"));
+    // What is whole needs no parts.
+    let names = ["garden.csv", "garden.json", "garden.png", "garden.svg", "index.html"];
+    assert_eq!(files(page.parent().unwrap()), names);
+    let png = fs::read(gallery.file("garden", "png")).unwrap();
+    let png = image::load_from_memory(&png).unwrap();
+    assert_eq!((png.width(), png.height()), (1600, 900));
+    fs::write(gallery.file("garden", "json"), &fs::read(gallery.file("garden", "json")).unwrap()[..200]).unwrap();
+    assert!(gallery.finished("garden", "a").is_none(), "half a file is no chart");
+    assert!(fs::read_to_string(gallery.write_page().unwrap()).unwrap().contains("No scene"));
+}
+
+#[test]
+fn a_gallery_says_which_folder_is_wrong() {
+    let folder = TempDir::new().unwrap();
+    let file = folder.path().join("file");
+    fs::write(&file, "").unwrap();
+    for bad in [file.clone(), file.join("below")] {
+        let error = Gallery::open(&bad).unwrap_err().to_string();
+        assert!(error.starts_with(&bad.display().to_string()) && error.contains("give a folder"), "{error}");
+    }
+}
+
+#[test]
+fn an_interrupted_sweep_goes_on_where_it_stopped() {
+    let folder = TempDir::new().unwrap();
+    let gallery = Gallery::open(folder.path()).unwrap();
+    let points = of_order_two().points;
+    let mut partial = gallery.partial("garden", "a").unwrap();
+    assert!(partial.is_empty() && partial.known(points[0].setting).is_none());
+    points[..2].iter().for_each(|&point| partial.push(point).unwrap());
+    // Cut off in the middle of a line.
+    let file = gallery.file("garden", "part.jsonl");
+    let text = fs::read_to_string(&file).unwrap();
+    fs::write(&file, format!("{text}{{\"setting\":{{\"meth")).unwrap();
+    let mut partial = gallery.partial("garden", "a").unwrap();
+    assert_eq!((partial.len(), partial.known(points[1].setting)), (2, Some(points[1])));
+    assert_eq!(partial.known(points[2].setting), None);
+    partial.push(points[2]).unwrap();
+    assert_eq!(gallery.partial("garden", "a").unwrap().len(), 3, "what comes after the cut is whole");
+    assert!(gallery.partial("garden", "b").unwrap().is_empty(), "another problem begins anew");
+}
+
+fn run(folder: &Path, arguments: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_wriggle"));
+    command.arg("chart").args(arguments).current_dir(folder).env("XDG_CACHE_HOME", folder.join("cache"));
+    command.output().unwrap()
+}
+
+#[test]
+fn the_command_measures_a_scene_once() {
+    let folder = TempDir::new().unwrap();
+    let creature = "Creature(version: 1, body: Raw(particles: [(position: (0, 0, 0), mass: 1), (position: (1.2, 0, 0), \
+                    mass: 1)], springs: [(ends: (0, 1), stiffness: 0.1, damping: 0.1, rest_length: 1)]))";
+    fs::write(folder.path().join("pair.creature.ron"), creature).unwrap();
+    let arguments = ["pair.creature.ron", "--out", "charts", "--quick"];
+    let output = run(folder.path(), &arguments);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    assert!(String::from_utf8_lossy(&output.stdout).contains("runs, measured;"));
+    assert!(output.stderr.is_empty(), "no bar in a pipe: {}", String::from_utf8_lossy(&output.stderr));
+    let charts = folder.path().join("charts");
+    assert_eq!(files(&charts), ["index.html", "pair.csv", "pair.json", "pair.png", "pair.svg"]);
+    let table = fs::read_to_string(charts.join("pair.csv")).unwrap();
+    for method in Method::ALL {
+        assert!(table.contains(&format!("pair,{},", method.name())), "no run of {}", method.name());
+    }
+    let output = run(folder.path(), &arguments);
+    assert!(String::from_utf8_lossy(&output.stdout).contains("runs, measured before;"));
+    assert_eq!(fs::read_to_string(charts.join("pair.csv")).unwrap(), table);
+}
+
+#[test]
+fn the_command_says_what_is_wrong_before_it_measures() {
+    let folder = TempDir::new().unwrap();
+    fs::write(folder.path().join("taken"), "").unwrap();
+    let cases: [(&[&str], &str); 4] = [
+        (&["gardn", "--out", "charts"], "gardn"),
+        (&["garden", "--out", "taken"], "taken: is no folder; give a folder that can be written to"),
+        (&["garden", "--out", "taken/below"], "taken/below: cannot be written to"),
+        (&["garden", "garden", "--out", "charts"], "give `garden` once"),
+    ];
+    for (arguments, problem) in cases {
+        let output = run(folder.path(), arguments);
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.code() == Some(2) && said.contains(problem), "{arguments:?}: {said}");
+    }
+}
