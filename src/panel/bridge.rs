@@ -10,6 +10,7 @@ use bevy::{
 };
 
 use super::{
+    chart,
     gauge::Gauge,
     names::Path,
     race::RunnerInfo,
@@ -95,6 +96,7 @@ fn open(world: &mut World, settings: &mut Settings, known: &mut Known) {
     known.defaults = parameters::list(world).into_iter().map(|parameter| (parameter.path, parameter.value)).collect();
     known.frozen.clear();
     settings.parameters.clear();
+    chart::forget(world, settings);
     settings.normal_time_scale = None;
     settings.steps_refusal = None;
     settings.files.scenes = library::list(library::SCENE).into_keys().collect();
@@ -233,6 +235,7 @@ fn act(world: &mut World, settings: &mut Settings, action: Action) {
             }
         }
         Action::Method(method) => parameters::set_method(world, method),
+        Action::Measure => settings.chart = chart::begin(world),
         Action::MethodOf(body, method) => {
             if let Some(mut old) = world.get_mut::<Method>(body) {
                 old.set_if_neq(method);

@@ -6,6 +6,7 @@
 
 pub mod bodies;
 pub mod bridge;
+pub mod chart;
 mod colors;
 pub mod files;
 pub mod gauge;
@@ -69,6 +70,7 @@ impl Plugin for PanelPlugin {
             .init_resource::<Traces>()
             .init_resource::<bridge::Known>()
             .init_resource::<sampling::Meter>()
+            .init_resource::<chart::Measuring>()
             .init_resource::<PointerOnPanel>()
             .init_resource::<CoveredLeft>()
             .add_systems(PreUpdate, choose_camera.before(EguiPreUpdateSet::InitContexts))
@@ -76,7 +78,9 @@ impl Plugin for PanelPlugin {
             .add_systems(Update, keys::keys)
             .add_systems(
                 PostUpdate,
-                (sampling::frame, bridge::listen, bridge::read).chain().before(EguiPostUpdateSet::EndPass),
+                (sampling::frame, bridge::listen, chart::listen, bridge::read)
+                    .chain()
+                    .before(EguiPostUpdateSet::EndPass),
             )
             .add_systems(PostUpdate, (bridge::apply, say_pointer, say_width).after(EguiPostUpdateSet::ProcessOutput))
             .add_systems(EguiPrimaryContextPass, draw);
@@ -173,6 +177,7 @@ fn sections(ui: &mut egui::Ui, settings: &mut Settings, traces: &Traces) {
             section(ui, "race", "Race", true, |ui| race::section(ui, settings));
         }
         section(ui, "plots", "Plots", true, |ui| plots::section(ui, settings, traces));
+        section(ui, "chart", "Speed against accuracy", false, |ui| chart::section(ui, settings));
         section(ui, "files", "Scenes and files", true, |ui| files::section(ui, settings));
     });
 }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use bevy::ecs::prelude::*;
 
-use super::{gauge::Gauge, race::RunnerInfo, row::Edit, setting::Setting};
+use super::{chart::ChartState, gauge::Gauge, race::RunnerInfo, row::Edit, setting::Setting};
 use crate::mechanics::integrators::Method;
 
 /// At most this many messages are kept; older ones go.
@@ -24,6 +24,8 @@ pub struct Settings {
     pub selected: usize,
     /// The method of the scene.
     pub method: Method,
+    /// The work-precision chart of the scene.
+    pub chart: ChartState,
     /// The runners of a race, the truth first; none where there is no race.
     pub race: Vec<RunnerInfo>,
     /// Whether time stands still.
@@ -127,6 +129,8 @@ pub enum Action {
     },
     /// Move every body by this method.
     Method(Method),
+    /// Measure the work-precision chart of the scene.
+    Measure,
     /// Step one body by this method.
     MethodOf(Entity, Method),
     /// Stop time, or let it go on.
