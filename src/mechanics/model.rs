@@ -1,11 +1,13 @@
 //! A body, or several of equal topology side by side, in the layout that steps work on.
 
 use crate::body::{
-    Epoch, Gravity, Ground, MassDamping, Muscle, Muscles, Particles, SpineFriction, Spring, Springs, Wave,
+    CoulombFriction, Epoch, Gravity, Ground, MassDamping, Muscle, Muscles, ParticleId, Particles, SpineFriction,
+    Spring, Springs, Wave,
 };
 
 use super::{
     Real,
+    coulomb::Coulomb,
     integrators::{Method, StickRule},
 };
 
@@ -20,6 +22,8 @@ pub struct BodyParts<'a> {
     pub muscles: Option<&'a Muscles>,
     /// Its friction, if it has any.
     pub friction: Option<&'a SpineFriction>,
+    /// Its dry friction, if it has any.
+    pub coulomb: Option<&'a CoulombFriction>,
     /// Its gravity, if it has any.
     pub gravity: Option<Gravity>,
     /// The ground that it stands on, if any.
@@ -48,7 +52,7 @@ impl BodyParts<'_> {
         fn driven<'a>(muscles: Option<&'a Muscles>) -> impl Iterator<Item = (u32, Wave)> + 'a {
             muscles.into_iter().flat_map(Muscles::iter).map(|muscle| (muscle.spring.0, muscle.wave))
         }
-        fn rule(friction: Option<&SpineFriction>) -> Option<(bool, &[crate::body::ParticleId])> {
+        fn rule(friction: Option<&SpineFriction>) -> Option<(bool, &[ParticleId])> {
             friction.map(|friction| (friction.ratchet(), friction.spine()))
         }
         (self.method, self.stick) == (other.method, other.stick)
@@ -56,6 +60,7 @@ impl BodyParts<'_> {
             && self.springs.ends() == other.springs.ends()
             && driven(self.muscles).eq(driven(other.muscles))
             && rule(self.friction) == rule(other.friction)
+            && self.coulomb.map(CoulombFriction::spine) == other.coulomb.map(CoulombFriction::spine)
             && self.ground == other.ground
             && self.gravity.is_some() == other.gravity.is_some()
             && self.mass_damping.is_some() == other.mass_damping.is_some()
@@ -141,6 +146,17 @@ pub(super) struct SpineRow {
     pub(super) next: u32,
 }
 
+impl SpineRow {
+    /// The rows of a spine.
+    pub(super) fn along(spine: &[ParticleId]) -> impl Iterator<Item = Self> + '_ {
+        (0..spine.len()).map(|i| Self {
+            particle: spine[i].0,
+            previous: spine[i.saturating_sub(1)].0,
+            next: spine[(i + 1).min(spine.len() - 1)].0,
+        })
+    }
+}
+
 /// Friction rates as the friction rules read them.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct FrictionRow<R> {
@@ -175,6 +191,7 @@ pub struct Model<R, const D: usize> {
     pub(super) muscles: Vec<MuscleRow<R>>,
     pub(super) spine: Vec<SpineRow>,
     pub(super) friction: Option<FrictionRow<R>>,
+    pub(super) coulomb: Option<Coulomb<R, D>>,
     pub(super) gravity: Option<R>,
     pub(super) ground: Option<Ground>,
     pub(super) damping: Option<DampingRow<R>>,
@@ -230,13 +247,7 @@ impl<R: Real, const D: usize> Model<R, D> {
             inverse_mass: vec![zero; body.particles.len()],
             springs: body.springs.iter().map(spring).collect(),
             muscles: body.muscles.into_iter().flat_map(Muscles::iter).map(MuscleRow::idle).collect(),
-            spine: (0..spine.len())
-                .map(|i| SpineRow {
-                    particle: spine[i].0,
-                    previous: spine[i.saturating_sub(1)].0,
-                    next: spine[(i + 1).min(spine.len() - 1)].0,
-                })
-                .collect(),
+            spine: SpineRow::along(spine).collect(),
             friction: body.friction.map(|friction| FrictionRow {
                 ratchet: friction.ratchet(),
                 has_drag: false,
@@ -246,6 +257,7 @@ impl<R: Real, const D: usize> Model<R, D> {
                 drag_loss: zero,
                 grip_loss: zero,
             }),
+            coulomb: body.coulomb.map(|coulomb| Coulomb::idle(coulomb, body.particles.len())),
             gravity: body.gravity.map(|_| zero),
             ground: body.ground,
             damping: body.mass_damping.map(|_| DampingRow { rate: zero, loss: zero }),
@@ -281,6 +293,9 @@ impl<R: Real, const D: usize> Model<R, D> {
             row.grip.set_lane(lane, friction.grip());
             row.drag_loss.set_lane(lane, -libm::expm1(-friction.drag() * self.dt));
             row.grip_loss.set_lane(lane, -libm::expm1(-friction.grip() * self.dt));
+        }
+        if let Some(coulomb) = &mut self.coulomb {
+            coulomb.set_lane(lane, body);
         }
         if let (Some(row), Some(gravity)) = (&mut self.gravity, body.gravity) {
             row.set_lane(lane, gravity.acceleration());

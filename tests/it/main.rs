@@ -4,6 +4,7 @@ mod support;
 
 mod cli;
 mod clock;
+mod crawlers;
 mod determinism;
 mod exact_worm;
 mod files;
