@@ -8,6 +8,7 @@ use thiserror::Error;
 use crate::{creatures::FileError, scenes::parameters::ParameterError};
 
 mod headless;
+mod limits;
 mod list;
 mod play;
 mod report;
@@ -40,6 +41,8 @@ enum Command {
     Shot(shot::ShotArguments),
     /// Run a scene or a creature without drawing it
     Run(run::RunArguments),
+    /// Print how large a step may be, for every body and method
+    Limits(limits::LimitsArguments),
 }
 
 /// How a command ended.
@@ -93,6 +96,7 @@ pub fn main() -> ExitCode {
         #[cfg(feature = "window")]
         Some(Command::Shot(arguments)) => shot::shot(&arguments),
         Some(Command::Run(arguments)) => run::run(&arguments),
+        Some(Command::Limits(arguments)) => limits::print(&arguments),
     };
     match outcome {
         Ok(Outcome::Done) => ExitCode::SUCCESS,

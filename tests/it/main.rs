@@ -11,6 +11,7 @@ mod files;
 mod friction;
 mod garden_worm;
 mod laws;
+mod limits;
 #[cfg(feature = "window")]
 mod panel;
 mod parameters;
