@@ -7,6 +7,7 @@ mod clock;
 mod crawlers;
 mod determinism;
 mod exact_worm;
+mod failures;
 mod files;
 mod friction;
 mod garden_worm;
