@@ -32,6 +32,7 @@ impl Body {
             springs: &self.springs,
             muscles: self.muscles.as_ref(),
             friction: self.friction.as_ref(),
+            coulomb: None,
             gravity: None,
             ground: None,
             mass_damping: None,

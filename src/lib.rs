@@ -45,8 +45,8 @@ struct Readme;
 pub mod prelude {
     pub use crate::{
         body::{
-            BodyError, Gravity, Ground, Muscle, Muscles, Particle, ParticleId, Particles, SpineFriction, Spring,
-            SpringId, Springs, Wave,
+            BodyError, Coefficients, CoulombFriction, Gravity, Ground, Muscle, Muscles, Particle, ParticleId,
+            Particles, SpineFriction, Spring, SpringId, Springs, Wave,
         },
         creatures::{Creature, GardenWorm, Pose},
         mechanics::integrators::Method,

@@ -25,34 +25,7 @@ impl SpineFriction {
     /// # Errors
     /// If the spine has fewer than two particles, names one that is not there, or names one twice.
     pub fn new(spine: impl IntoIterator<Item = ParticleId>, particles: &Particles) -> Result<Self, BodyError> {
-        let spine: Vec<_> = spine.into_iter().collect();
-        if spine.len() < 2 {
-            return Err(BodyError::Inconsistent {
-                path: "spine".into(),
-                problem: format!(
-                    "has {} particle(s); two or more, from tail to head, give it a direction",
-                    spine.len()
-                ),
-            });
-        }
-        let mut seen = vec![false; particles.len()];
-        for (i, particle) in spine.iter().enumerate() {
-            let Some(seen) = seen.get_mut(particle.index()) else {
-                return Err(BodyError::Missing {
-                    path: format!("spine[{i}]"),
-                    what: "particle",
-                    index: particle.0,
-                    count: particles.len(),
-                });
-            };
-            if core::mem::replace(seen, true) {
-                return Err(BodyError::Inconsistent {
-                    path: format!("spine[{i}]"),
-                    problem: format!("names particle {} a second time; a spine passes each once", particle.0),
-                });
-            }
-        }
-        Ok(Self { spine, ratchet: true, drag: 0.0, grip: 0.0 })
+        Ok(Self { spine: check_spine(spine, particles)?, ratchet: true, drag: 0.0, grip: 0.0 })
     }
 
     /// Switches the ratchet: with it, S·V < 0 ⇒ V −= S(S·V).
@@ -99,4 +72,36 @@ impl SpineFriction {
     pub fn grip(&self) -> f64 {
         self.grip
     }
+}
+
+/// A spine of particles that are there, two or more, each once.
+pub(super) fn check_spine(
+    spine: impl IntoIterator<Item = ParticleId>,
+    particles: &Particles,
+) -> Result<Vec<ParticleId>, BodyError> {
+    let spine: Vec<_> = spine.into_iter().collect();
+    if spine.len() < 2 {
+        return Err(BodyError::Inconsistent {
+            path: "spine".into(),
+            problem: format!("has {} particle(s); two or more, from tail to head, give it a direction", spine.len()),
+        });
+    }
+    let mut seen = vec![false; particles.len()];
+    for (i, particle) in spine.iter().enumerate() {
+        let Some(seen) = seen.get_mut(particle.index()) else {
+            return Err(BodyError::Missing {
+                path: format!("spine[{i}]"),
+                what: "particle",
+                index: particle.0,
+                count: particles.len(),
+            });
+        };
+        if core::mem::replace(seen, true) {
+            return Err(BodyError::Inconsistent {
+                path: format!("spine[{i}]"),
+                problem: format!("names particle {} a second time; a spine passes each once", particle.0),
+            });
+        }
+    }
+    Ok(spine)
 }

@@ -1,6 +1,6 @@
 //! What a body is made of: components of one entity, plain data with its invariants, and no systems.
 //!
-//! A body is **one entity**. [`Particles`], [`Springs`], [`Muscles`], [`SpineFriction`], [`Gravity`] and [`Ground`] are its components,
+//! A body is **one entity**. [`Particles`], [`Springs`], [`Muscles`], [`SpineFriction`], [`CoulombFriction`], [`Gravity`] and [`Ground`] are its components,
 //! and each holds flat arrays indexed by particle or by spring, so that a whole body fits the first cache and a step
 //! reads memory in order. A body has only the components that its scene needs: without [`Gravity`] there is no gravity.
 //!
@@ -9,6 +9,7 @@
 //!
 //! Lengths, masses and times are pure numbers in whatever units a scene chooses; nothing here assumes SI.
 
+mod coulomb;
 mod environment;
 mod error;
 mod friction;
@@ -17,6 +18,7 @@ mod muscles;
 mod particles;
 mod springs;
 
+pub use coulomb::{Coefficients, CoulombFriction};
 pub use environment::{Gravity, Ground};
 pub use error::{BodyError, Requirement, check};
 pub use friction::SpineFriction;

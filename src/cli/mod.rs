@@ -14,6 +14,7 @@ use crate::{
 mod chart;
 mod choose;
 mod headless;
+mod limits;
 mod list;
 mod play;
 mod report;
@@ -50,6 +51,8 @@ enum Command {
     Choose(choose::ChooseArguments),
     /// Measure what accuracy costs with every method, and draw it
     Chart(chart::ChartArguments),
+    /// Print how large a step may be, for every body and method
+    Limits(limits::LimitsArguments),
 }
 
 /// How a command ended.
@@ -111,6 +114,7 @@ pub fn main() -> ExitCode {
         Some(Command::Run(arguments)) => run::run(&arguments),
         Some(Command::Choose(arguments)) => choose::choose(&arguments),
         Some(Command::Chart(arguments)) => chart::chart(&arguments),
+        Some(Command::Limits(arguments)) => limits::print(&arguments),
     };
     match outcome {
         Ok(Outcome::Done) => ExitCode::SUCCESS,

@@ -17,6 +17,9 @@ pub struct Creature {
     /// Friction along its spine. Left out: what its kind needs; a raw body without it feels none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub friction: Option<Friction>,
+    /// Dry friction along and across its spine. Left out: none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub coulomb: Option<Coulomb>,
     /// Damping in proportion to mass, as `Rate(c)` or as the `PerStep(λ)` of damped Verlet. Left out: none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub damping: Option<MassDamping>,
@@ -139,6 +142,24 @@ pub struct Friction {
     pub grip: f64,
 }
 
+/// Dry friction along and across the spine, as coefficients.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Coulomb {
+    /// Against sliding forward, zero or more.
+    #[serde(deserialize_with = "numbers::non_negative")]
+    pub forward: f64,
+    /// Against sliding backward, zero or more.
+    #[serde(deserialize_with = "numbers::non_negative")]
+    pub backward: f64,
+    /// Against sliding across, zero or more. Left out: 0.
+    #[serde(default, deserialize_with = "numbers::non_negative")]
+    pub sideways: f64,
+    /// What presses a mass on, as an acceleration, zero or more. Left out: gravity, and 9.81 where there is none.
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "numbers::optional_non_negative")]
+    pub load: Option<f64>,
+}
+
 impl Default for Friction {
     fn default() -> Self {
         Self { ratchet: true, drag: None, grip: 0.0 }
@@ -165,13 +186,29 @@ impl Creature {
 
 impl From<GardenWorm> for Creature {
     fn from(worm: GardenWorm) -> Self {
-        Self { version: 1, body: Plan::GardenWorm(worm), friction: None, damping: None, ground: None, gravity: None }
+        Self {
+            version: 1,
+            body: Plan::GardenWorm(worm),
+            friction: None,
+            coulomb: None,
+            damping: None,
+            ground: None,
+            gravity: None,
+        }
     }
 }
 
 impl From<RawBody> for Creature {
     fn from(raw: RawBody) -> Self {
-        Self { version: 1, body: Plan::Raw(raw), friction: None, damping: None, ground: None, gravity: None }
+        Self {
+            version: 1,
+            body: Plan::Raw(raw),
+            friction: None,
+            coulomb: None,
+            damping: None,
+            ground: None,
+            gravity: None,
+        }
     }
 }
 

@@ -7,9 +7,10 @@ use bevy::{
     math::DVec3,
 };
 
-use super::{Creature, Friction, GardenWorm, Look, Plan, RawBody, RawParticle};
+use super::{Coulomb, Creature, Friction, GardenWorm, Look, Plan, RawBody, RawParticle};
 use crate::body::{
-    BodyError, MassDamping, Muscle, Muscles, Particle, ParticleId, Particles, SpineFriction, Spring, SpringId, Springs,
+    BodyError, Coefficients, CoulombFriction, MassDamping, Muscle, Muscles, Particle, ParticleId, Particles,
+    SpineFriction, Spring, SpringId, Springs,
 };
 
 /// Where a creature is put, and which way it looks.
@@ -52,6 +53,8 @@ pub struct Body {
     pub muscles: Option<Muscles>,
     /// Friction along its spine, if it feels any.
     pub friction: Option<SpineFriction>,
+    /// Dry friction along its spine, if it feels any.
+    pub coulomb: Option<CoulombFriction>,
     /// Its damping by what surrounds it, if any.
     pub damping: Option<MassDamping>,
     /// How it wants to be drawn.
@@ -68,6 +71,9 @@ impl EntityCommand for Body {
         }
         if let Some(friction) = self.friction {
             entity.insert(friction);
+        }
+        if let Some(coulomb) = self.coulomb {
+            entity.insert(coulomb);
         }
         if let Some(damping) = self.damping {
             entity.insert(damping);
@@ -97,12 +103,13 @@ impl Creature {
             // The spine is checked even where nothing uses it, so that a mistake in it does not wait for the friction.
             SpineFriction::new(raw.spine.iter().copied().map(ParticleId), &particles)?;
         }
+        let coulomb = self.coulomb.map(|coulomb| coulomb_friction(&raw, coulomb, &particles)).transpose()?;
         let damping = match self.damping {
             None => None,
             Some(MassDamping::Rate(rate)) => Some(MassDamping::rate(rate)?),
             Some(MassDamping::PerStep(part)) => Some(MassDamping::per_step(part)?),
         };
-        Ok(Body { particles, springs, muscles, friction, damping, look: self.look() })
+        Ok(Body { particles, springs, muscles, friction, coulomb, damping, look: self.look() })
     }
 }
 
@@ -165,14 +172,29 @@ fn spine_friction(
     drag: f64,
     particles: &Particles,
 ) -> Result<SpineFriction, BodyError> {
-    if raw.spine.is_empty() {
-        return Err(BodyError::Inconsistent {
-            path: "friction".into(),
-            problem: "works along a spine, and this body has none; give `spine: [tail, …, head]` in its body".into(),
-        });
-    }
-    SpineFriction::new(raw.spine.iter().copied().map(ParticleId), particles)?
+    SpineFriction::new(spine(raw, "friction")?, particles)?
         .with_ratchet(friction.ratchet)
         .with_drag(friction.drag.unwrap_or(drag))?
         .with_grip(friction.grip)
+}
+
+fn coulomb_friction(raw: &RawBody, coulomb: Coulomb, particles: &Particles) -> Result<CoulombFriction, BodyError> {
+    let Coulomb { forward, backward, sideways, load } = coulomb;
+    let friction = CoulombFriction::new(Coefficients { forward, backward, sideways })?
+        .with_spine(spine(raw, "coulomb")?, particles)?;
+    match load {
+        Some(load) => friction.with_load(load),
+        None => Ok(friction),
+    }
+}
+
+/// The spine of a body, along which `field` works.
+fn spine<'a>(raw: &'a RawBody, field: &str) -> Result<impl Iterator<Item = ParticleId> + use<'a>, BodyError> {
+    if raw.spine.is_empty() {
+        return Err(BodyError::Inconsistent {
+            path: field.into(),
+            problem: "works along a spine, and this body has none; give `spine: [tail, …, head]` in its body".into(),
+        });
+    }
+    Ok(raw.spine.iter().copied().map(ParticleId))
 }

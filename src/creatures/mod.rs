@@ -22,7 +22,7 @@ mod look;
 pub(crate) mod numbers;
 mod parse;
 
-pub use blueprint::{Creature, Friction, Plan, RawBody, RawMuscle, RawParticle, RawSpring};
+pub use blueprint::{Coulomb, Creature, Friction, Plan, RawBody, RawMuscle, RawParticle, RawSpring};
 pub use build::{Body, Pose};
 pub use error::FileError;
 pub use garden_worm::GardenWorm;

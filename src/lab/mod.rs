@@ -6,6 +6,7 @@ mod choose;
 mod error;
 mod gallery;
 mod hash;
+pub mod limits;
 mod machine;
 mod page;
 mod partial;

@@ -3,7 +3,7 @@
 use bevy::{ecs::prelude::*, prelude::Name};
 
 use crate::{
-    body::{Gravity, Ground, MassDamping, Muscles, Particles, SpineFriction, Springs},
+    body::{CoulombFriction, Gravity, Ground, MassDamping, Muscles, Particles, SpineFriction, Springs},
     mechanics::{
         BodyParts,
         integrators::{Method, StickRule},
@@ -34,6 +34,8 @@ pub struct ProblemBody {
     pub muscles: Option<Muscles>,
     /// Its friction, if it has any.
     pub friction: Option<SpineFriction>,
+    /// Its Coulomb friction, if it feels any.
+    pub coulomb: Option<CoulombFriction>,
     /// Its gravity, if it has any.
     pub gravity: Option<Gravity>,
     /// The ground that it stands on, if any.
@@ -51,6 +53,7 @@ impl ProblemBody {
             springs: &self.springs,
             muscles: self.muscles.as_ref(),
             friction: self.friction.as_ref(),
+            coulomb: self.coulomb.as_ref(),
             gravity: self.gravity,
             ground: self.ground,
             mass_damping: self.mass_damping,
@@ -196,6 +199,7 @@ fn body(entity: EntityRef<'_>, dt: f64) -> Option<ProblemBody> {
         springs: entity.get::<Springs>()?.clone(),
         muscles: entity.get::<Muscles>().filter(|muscles| !muscles.is_empty()).cloned(),
         friction: entity.get::<SpineFriction>().cloned(),
+        coulomb: entity.get::<CoulombFriction>().cloned(),
         // Gravity of zero is none: it must not cost a body its axis.
         gravity: entity.get::<Gravity>().copied().filter(|gravity| gravity.acceleration() > 0.0),
         ground: entity.get::<Ground>().copied(),

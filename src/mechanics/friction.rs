@@ -1,4 +1,4 @@
-//! Friction along and across the spine.
+//! Friction along and across the spine; `coulomb` has the dry kind.
 //!
 //! `ratchet`: s = S·v; if s < 0, v −= s S (Miller 1988). `drag` and `grip` are rates at which forward and sideways sliding die away.
 //! A method either lets them act once at the end of its step ([`Model::apply_friction`]), as the documents do, or
@@ -33,13 +33,18 @@ pub(super) struct Frame<R, const D: usize> {
 impl<R: Real, const D: usize> Model<R, D> {
     #[inline(always)]
     pub(super) fn frame(&self, row: SpineRow, position: &[[R; D]]) -> Frame<R, D> {
-        let (zero, one) = (R::splat(0.0), R::splat(1.0));
         let spine = direction(position[row.previous as usize], position[row.next as usize]).1;
+        self.frame_along(row.particle, spine, position)
+    }
+
+    /// The frame of a particle where the spine has this direction.
+    #[inline(always)]
+    pub(super) fn frame_along(&self, particle: u32, spine: [R; D], position: &[[R; D]]) -> Frame<R, D> {
+        let (zero, one) = (R::splat(0.0), R::splat(1.0));
         let mut frame = Frame { spine, forward: spine, side: [zero; D], touches: one };
         if D == 3 {
             if let Some(Ground::Flat) = self.ground {
-                frame.touches =
-                    position[row.particle as usize][1].if_below(R::splat(Ground::CONTACT_DISTANCE), one, zero);
+                frame.touches = position[particle as usize][1].if_below(R::splat(Ground::CONTACT_DISTANCE), one, zero);
                 let mut level = spine;
                 level[1] = zero;
                 frame.forward = direction([zero; D], level).1;
@@ -52,9 +57,15 @@ impl<R: Real, const D: usize> Model<R, D> {
         frame
     }
 
-    /// Lets friction act on all velocities for a whole step: the ratchet first, then drag and grip as exact decays over dt.
+    /// Lets friction act on all velocities for a whole step: the ratchet first, then drag and grip as exact decays over dt, then Coulomb friction.
     #[inline(always)]
-    pub fn apply_friction(&self, position: &[[R; D]], velocity: &mut [[R; D]]) {
+    pub fn apply_friction(&mut self, position: &[[R; D]], velocity: &mut [[R; D]]) {
+        self.apply_spine_friction(position, velocity);
+        self.apply_coulomb(position, velocity);
+    }
+
+    #[inline(always)]
+    fn apply_spine_friction(&self, position: &[[R; D]], velocity: &mut [[R; D]]) {
         let Some(friction) = self.friction else { return };
         for &row in &self.spine {
             let frame = self.frame(row, position);
@@ -73,16 +84,23 @@ impl<R: Real, const D: usize> Model<R, D> {
 
     /// Lets friction act on the velocities with which a step ends: what the stages admit, or all of it where it acts only now.
     #[inline(always)]
-    pub fn finish_velocity(&self, position: &[[R; D]], velocity: &mut [[R; D]]) {
+    pub fn finish_velocity(&mut self, position: &[[R; D]], velocity: &mut [[R; D]]) {
         match self.stick {
-            StickRule::InStages => self.admit_velocity(position, velocity),
-            StickRule::EndOfStep => self.apply_friction(position, velocity),
+            StickRule::InStages => self.admit_spine_velocity(position, velocity),
+            StickRule::EndOfStep => self.apply_spine_friction(position, velocity),
         }
+        self.finish_coulomb(position, velocity);
     }
 
-    /// Takes from all velocities what friction does not admit: sliding back along the spine. Nothing where friction acts at the end of a step.
+    /// Takes from all velocities what friction does not admit: sliding back along the spine, and past the stop. Nothing where friction acts at the end of a step.
     #[inline(always)]
-    pub fn admit_velocity(&self, position: &[[R; D]], velocity: &mut [[R; D]]) {
+    pub fn admit_velocity(&mut self, position: &[[R; D]], velocity: &mut [[R; D]]) {
+        self.admit_spine_velocity(position, velocity);
+        self.admit_coulomb_velocity(position, velocity);
+    }
+
+    #[inline(always)]
+    fn admit_spine_velocity(&self, position: &[[R; D]], velocity: &mut [[R; D]]) {
         let (Some(friction), StickRule::InStages) = (self.friction, self.stick) else { return };
         for &row in &self.spine {
             ratchet(&friction, &self.frame(row, position), &mut velocity[row.particle as usize]);
@@ -92,8 +110,16 @@ impl<R: Real, const D: usize> Model<R, D> {
     /// Adds drag and grip to all accelerations, and takes from them what friction does not admit: that a mass which does not slide forward starts
     /// to slide back. `velocity` is admitted already. Nothing where friction acts at the end of a step.
     #[inline(always)]
-    pub fn admit_acceleration(&self, position: &[[R; D]], velocity: &[[R; D]], acceleration: &mut [[R; D]]) {
-        let (Some(friction), StickRule::InStages) = (self.friction, self.stick) else { return };
+    pub fn admit_acceleration(&mut self, position: &[[R; D]], velocity: &[[R; D]], acceleration: &mut [[R; D]]) {
+        if self.stick == StickRule::InStages {
+            self.admit_spine_acceleration(position, velocity, acceleration);
+            self.admit_coulomb_acceleration(position, velocity, acceleration);
+        }
+    }
+
+    #[inline(always)]
+    fn admit_spine_acceleration(&self, position: &[[R; D]], velocity: &[[R; D]], acceleration: &mut [[R; D]]) {
+        let Some(friction) = self.friction else { return };
         let zero = R::splat(0.0);
         for &row in &self.spine {
             let frame = self.frame(row, position);
@@ -128,7 +154,7 @@ fn ratchet<R: Real, const D: usize>(friction: &FrictionRow<R>, frame: &Frame<R, 
 }
 
 #[inline(always)]
-fn dot<R: Real, const D: usize>(a: [R; D], b: [R; D]) -> R {
+pub(super) fn dot<R: Real, const D: usize>(a: [R; D], b: [R; D]) -> R {
     let mut sum = a[0] * b[0];
     for axis in 1..D {
         sum += a[axis] * b[axis];
@@ -138,7 +164,7 @@ fn dot<R: Real, const D: usize>(a: [R; D], b: [R; D]) -> R {
 
 /// v −= amount·along
 #[inline(always)]
-fn subtract<R: Real, const D: usize>(v: &mut [R; D], along: [R; D], amount: R) {
+pub(super) fn subtract<R: Real, const D: usize>(v: &mut [R; D], along: [R; D], amount: R) {
     for axis in 0..D {
         v[axis] -= amount * along[axis];
     }

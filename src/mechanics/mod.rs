@@ -7,6 +7,7 @@
 
 mod advance;
 mod contact;
+mod coulomb;
 mod energy;
 mod forces;
 mod friction;

@@ -1,11 +1,13 @@
 //! A body, or several of equal topology side by side, in the layout that steps work on.
 
 use crate::body::{
-    Epoch, Gravity, Ground, MassDamping, Muscle, Muscles, Particles, SpineFriction, Spring, Springs, Wave,
+    CoulombFriction, Epoch, Gravity, Ground, MassDamping, Muscle, Muscles, ParticleId, Particles, SpineFriction,
+    Spring, Springs, Wave,
 };
 
 use super::{
     Real,
+    coulomb::Coulomb,
     forces::direction,
     integrators::{Method, StickRule},
 };
@@ -21,6 +23,8 @@ pub struct BodyParts<'a> {
     pub muscles: Option<&'a Muscles>,
     /// Its friction, if it has any.
     pub friction: Option<&'a SpineFriction>,
+    /// Its dry friction, if it has any.
+    pub coulomb: Option<&'a CoulombFriction>,
     /// Its gravity, if it has any.
     pub gravity: Option<Gravity>,
     /// The ground that it stands on, if any.
@@ -49,7 +53,7 @@ impl BodyParts<'_> {
         fn driven<'a>(muscles: Option<&'a Muscles>) -> impl Iterator<Item = (u32, Wave)> + 'a {
             muscles.into_iter().flat_map(Muscles::iter).map(|muscle| (muscle.spring.0, muscle.wave))
         }
-        fn rule(friction: Option<&SpineFriction>) -> Option<(bool, &[crate::body::ParticleId])> {
+        fn rule(friction: Option<&SpineFriction>) -> Option<(bool, &[ParticleId])> {
             friction.map(|friction| (friction.ratchet(), friction.spine()))
         }
         (self.method, self.stick) == (other.method, other.stick)
@@ -57,6 +61,7 @@ impl BodyParts<'_> {
             && self.springs.ends() == other.springs.ends()
             && driven(self.muscles).eq(driven(other.muscles))
             && rule(self.friction) == rule(other.friction)
+            && self.coulomb.map(CoulombFriction::spine) == other.coulomb.map(CoulombFriction::spine)
             && self.ground == other.ground
             && self.gravity.is_some() == other.gravity.is_some()
             && self.mass_damping.is_some() == other.mass_damping.is_some()
@@ -142,6 +147,17 @@ pub(super) struct SpineRow {
     pub(super) next: u32,
 }
 
+impl SpineRow {
+    /// The rows of a spine.
+    pub(super) fn along(spine: &[ParticleId]) -> impl Iterator<Item = Self> + '_ {
+        (0..spine.len()).map(|i| Self {
+            particle: spine[i].0,
+            previous: spine[i.saturating_sub(1)].0,
+            next: spine[(i + 1).min(spine.len() - 1)].0,
+        })
+    }
+}
+
 /// Friction rates as the friction rules read them.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct FrictionRow<R> {
@@ -176,6 +192,7 @@ pub struct Model<R, const D: usize> {
     pub(super) muscles: Vec<MuscleRow<R>>,
     pub(super) spine: Vec<SpineRow>,
     pub(super) friction: Option<FrictionRow<R>>,
+    pub(super) coulomb: Option<Coulomb<R, D>>,
     pub(super) gravity: Option<R>,
     pub(super) ground: Option<Ground>,
     pub(super) damping: Option<DampingRow<R>>,
@@ -231,13 +248,7 @@ impl<R: Real, const D: usize> Model<R, D> {
             inverse_mass: vec![zero; body.particles.len()],
             springs: body.springs.iter().map(spring).collect(),
             muscles: body.muscles.into_iter().flat_map(Muscles::iter).map(MuscleRow::idle).collect(),
-            spine: (0..spine.len())
-                .map(|i| SpineRow {
-                    particle: spine[i].0,
-                    previous: spine[i.saturating_sub(1)].0,
-                    next: spine[(i + 1).min(spine.len() - 1)].0,
-                })
-                .collect(),
+            spine: SpineRow::along(spine).collect(),
             friction: body.friction.map(|friction| FrictionRow {
                 ratchet: friction.ratchet(),
                 has_drag: false,
@@ -247,6 +258,7 @@ impl<R: Real, const D: usize> Model<R, D> {
                 drag_loss: zero,
                 grip_loss: zero,
             }),
+            coulomb: body.coulomb.map(|coulomb| Coulomb::idle(coulomb, body.particles.len())),
             gravity: body.gravity.map(|_| zero),
             ground: body.ground,
             damping: body.mass_damping.map(|_| DampingRow { rate: zero, loss: zero }),
@@ -282,6 +294,9 @@ impl<R: Real, const D: usize> Model<R, D> {
             row.grip.set_lane(lane, friction.grip());
             row.drag_loss.set_lane(lane, -libm::expm1(-friction.drag() * self.dt));
             row.grip_loss.set_lane(lane, -libm::expm1(-friction.grip() * self.dt));
+        }
+        if let Some(coulomb) = &mut self.coulomb {
+            coulomb.set_lane(lane, body);
         }
         if let (Some(row), Some(gravity)) = (&mut self.gravity, body.gravity) {
             row.set_lane(lane, gravity.acceleration());
@@ -341,6 +356,7 @@ impl<R: Real, const D: usize> Model<R, D> {
             }),
             gravity: self.gravity.as_ref().map(of),
             ground: self.ground,
+            coulomb: self.coulomb.as_ref().map(|coulomb| coulomb.lane(lane)),
             damping: self.damping.as_ref().map(|row| DampingRow { rate: of(&row.rate), loss: of(&row.loss) }),
             stick: self.stick,
             rest: self.rest.iter().map(of).collect(),

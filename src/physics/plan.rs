@@ -10,7 +10,7 @@ use bevy::{
 };
 
 use crate::{
-    body::{Gravity, Ground, MassDamping, Muscles, Particles, SpineFriction, Springs},
+    body::{CoulombFriction, Gravity, Ground, MassDamping, Muscles, Particles, SpineFriction, Springs},
     mechanics::{
         BodyParts,
         integrators::{Method, StickRule},
@@ -26,6 +26,7 @@ pub(super) struct Parts {
     springs: &'static Springs,
     muscles: Option<&'static Muscles>,
     friction: Option<&'static SpineFriction>,
+    coulomb: Option<&'static CoulombFriction>,
     gravity: Option<&'static Gravity>,
     ground: Option<&'static Ground>,
     mass_damping: Option<&'static MassDamping>,
@@ -41,6 +42,7 @@ impl PartsItem<'_, '_> {
             springs: self.springs,
             muscles: self.muscles,
             friction: self.friction,
+            coulomb: self.coulomb,
             // Gravity of zero is none: it must not cost a body its axis.
             gravity: self.gravity.copied().filter(|gravity| gravity.acceleration() > 0.0),
             ground: self.ground.copied(),
@@ -84,6 +86,7 @@ type Changes = Or<(
     Changed<Particles>,
     Changed<Springs>,
     Changed<SpineFriction>,
+    Changed<CoulombFriction>,
     Changed<Muscles>,
     Changed<Gravity>,
     Changed<Ground>,
@@ -144,6 +147,7 @@ fn topology(body: &BodyParts<'_>) -> u64 {
     if let Some(friction) = body.friction {
         (friction.ratchet(), friction.spine()).hash(&mut hasher);
     }
+    body.coulomb.map(CoulombFriction::spine).hash(&mut hasher);
     (body.ground.is_some(), body.gravity.is_some(), body.mass_damping.is_some()).hash(&mut hasher);
     hasher.finish()
 }
@@ -159,8 +163,14 @@ fn misfit(body: &BodyParts<'_>) -> Option<String> {
     if body.friction.is_some_and(|friction| friction.spine().iter().any(|particle| out_of_reach(particle.index()))) {
         return Some(format!("its spine was made for another body; this one has {particles} particles"));
     }
+    if body.coulomb.is_some_and(|coulomb| !coulomb.fits(particles)) {
+        return Some(format!("its Coulomb friction was made for another body; this one has {particles} particles"));
+    }
     if body.muscles.is_some_and(|muscles| muscles.iter().any(|muscle| muscle.spring.index() >= body.springs.len())) {
         return Some(format!("its muscles were made for another body; this one has {} springs", body.springs.len()));
+    }
+    if body.method == Method::ExactFlow && body.coulomb.is_some() {
+        return Some("ExactFlow does not locate the events of Coulomb friction".into());
     }
     if body.method == Method::ExactFlow && !body.on_axis() {
         let problem =

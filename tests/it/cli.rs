@@ -263,3 +263,19 @@ fn the_creature_of_the_readme_crawls() {
     assert_eq!((ant["name"].as_str(), ant["status"].as_str()), (Some("ant"), Some("running")));
     assert!(ant["center"][0].as_f64().unwrap() > 2.0, "{ant}");
 }
+
+#[test]
+fn limits_prints_every_method_of_a_scene_as_a_table_and_as_json() {
+    let rows = json(&["limits", "garden"]);
+    let rows = rows.as_array().unwrap();
+    let row = |method: &str| rows.iter().find(|row| row["method"] == method).unwrap();
+    let euler = row("SemiImplicitEuler");
+    assert!((euler["predicted"].as_f64().unwrap() - 0.5175).abs() < 5e-5, "{euler}");
+    assert_eq!((euler["scene"].as_str(), euler["body"].as_str()), (Some("garden"), Some("worm")));
+    assert_eq!(row("Xpbd")["bound"].as_str(), Some("none"));
+    let table = stdout(&wriggle(&["limits", "garden"]));
+    for word in ["predicted", "bound", "linearised", "explodes", "SemiImplicitEuler", "0.5175", "none"] {
+        assert!(table.contains(word), "`{word}` is missing in {table}");
+    }
+    assert_eq!(wriggle(&["limits", "gardn"]).status.code(), Some(2));
+}

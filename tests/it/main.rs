@@ -5,13 +5,16 @@ mod support;
 mod chart;
 mod cli;
 mod clock;
+mod crawlers;
 mod determinism;
 mod exact_worm;
+mod failures;
 mod files;
 mod friction;
 mod garden_worm;
 mod lab;
 mod laws;
+mod limits;
 mod methods;
 #[cfg(feature = "window")]
 mod panel;

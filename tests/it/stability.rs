@@ -114,6 +114,7 @@ fn the_bound_is_the_true_limit_of_a_long_chain_and_safe_for_unequal_masses() {
             springs,
             muscles: None,
             friction: None,
+            coulomb: None,
             gravity: None,
             ground: None,
             mass_damping: None,

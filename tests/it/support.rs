@@ -90,6 +90,7 @@ impl Body {
             springs: &self.springs,
             muscles: Some(&self.muscles),
             friction: Some(&self.friction),
+            coulomb: None,
             gravity: None,
             ground: None,
             mass_damping: None,

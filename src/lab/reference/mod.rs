@@ -45,12 +45,16 @@ impl Reference {
     /// Follows all bodies of a problem, without looking into the cache.
     ///
     /// # Errors
-    /// If a body meets a ground, of which no smooth piece is known, or the motion of one cannot be followed.
+    /// If a body meets a ground or feels Coulomb friction, of which no smooth piece is known, or the motion of one cannot be followed.
     pub fn solve(problem: &Problem) -> Result<Self, LabError> {
         let mut reference = Self { positions: Vec::new(), velocities: Vec::new(), events: Vec::new(), error: 0.0 };
         for (index, body) in problem.bodies.iter().enumerate() {
-            if body.ground.is_some() {
-                let what = "a body on the ground, whose contacts are not located".into();
+            let unknown = match body {
+                ProblemBody { ground: Some(_), .. } => Some("a body on the ground, whose contacts are not located"),
+                ProblemBody { coulomb: Some(_), .. } => Some("Coulomb friction, whose events are not located"),
+                _ => None,
+            };
+            if let Some(what) = unknown.map(str::to_owned) {
                 return Err(LabError::Unsupported { scene: problem.name.clone(), what });
             }
             let on_axis = body.parts(Method::default(), StickRule::default()).on_axis();

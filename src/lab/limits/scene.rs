@@ -1,0 +1,147 @@
+//! The limit of a scene: where its body explodes with muscles, friction and contact.
+
+use bevy::math::DVec3;
+
+use crate::{
+    body::{Muscles, Particles},
+    mechanics::{Advance, BodyParts, Model, State, Timeline, elastic_energy, kinetic_energy, momentum},
+};
+
+use super::{is_apart, linear::Linear, search::bisect};
+
+/// For how many cycles of its slowest muscle a body is watched.
+const CYCLES: f64 = 50.0;
+/// How many steps it is watched at least, and at most.
+const STEPS: [f64; 2] = [200.0, 1e6];
+/// The search looks at steps that differ by this factor.
+const STRIDE: f64 = 1.05;
+/// The limit is found to this part of itself.
+const PRECISION: f64 = 0.005;
+
+/// How a run went.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Outcome {
+    /// A spring was longer than ten rest lengths, something was not finite, or the energy was more than springs can hold.
+    exploded: bool,
+    /// The method could not take a step.
+    refused: bool,
+    /// A spring pointed the other way.
+    flipped: bool,
+}
+
+/// The smallest step at which the body explodes within fifty cycles of its muscles, or has more energy than all of its springs would hold
+/// squeezed to no length: searched from half of `linearised` to four times that, or to a whole cycle where that is infinite. Infinite where it does
+/// not explode at any of these; nothing where the method cannot step it.
+pub fn scene_limit(body: &BodyParts<'_>, linearised: f64) -> Option<f64> {
+    let rate = Linear::of(body)?.rate;
+    let period = period(body).unwrap_or(if rate > 0.0 { 1.0 / rate } else { 1.0 });
+    let (mut dt, last, stride) = match linearised {
+        0.0 => (1e-3 / rate, period, STRIDE * STRIDE),
+        limit if limit.is_finite() => (0.5 * limit, 4.0 * limit, STRIDE),
+        _ => (1e-3 * period, period, 1.4),
+    };
+    let exploded = |dt| {
+        let outcome = run(body, dt);
+        if outcome.refused { None } else { Some(outcome.exploded) }
+    };
+    let mut below = dt;
+    while exploded(below)? {
+        below *= 0.7;
+        if below < 1e-3 * dt {
+            return Some(0.0);
+        }
+    }
+    if below == dt {
+        while !exploded(dt * stride)? {
+            dt *= stride;
+            if dt > last {
+                return Some(f64::INFINITY);
+            }
+        }
+        below = dt;
+        dt *= stride;
+    }
+    Some(bisect(below, dt, PRECISION, |dt| exploded(dt) == Some(false)))
+}
+
+/// Why a body explodes at `explodes` where its linearised step grows from `linearised` on.
+pub(super) fn reason(body: &BodyParts<'_>, linearised: f64, explodes: f64) -> &'static str {
+    let slippery = BodyParts { friction: None, coulomb: None, ground: None, gravity: None, ..*body };
+    let has_friction = body.friction.is_some() || body.coulomb.is_some() || body.ground.is_some();
+    let without = if has_friction { scene_limit(&slippery, linearised) } else { None };
+    if linearised == 0.0 {
+        "what is not damped grows too slowly to explode in fifty cycles"
+    } else if explodes < linearised {
+        match without {
+            Some(without) if !is_apart(linearised, without) => "friction lets masses go with a jerk",
+            _ => "muscles drive it into poses and speeds that a small disturbance does not reach",
+        }
+    } else if without.is_some_and(|without| without <= linearised || !is_apart(linearised, without)) {
+        "friction holds masses, and what is held does not oscillate"
+    } else {
+        let between = if explodes.is_finite() { (linearised * explodes).sqrt() } else { 1.5 * linearised };
+        match run(body, between).flipped || run(&slippery, between).flipped {
+            true => "a spring through zero length flips: bounded rattling",
+            false => "the disturbance grows too slowly to explode in fifty cycles",
+        }
+    }
+}
+
+fn period(body: &BodyParts<'_>) -> Option<f64> {
+    body.muscles.into_iter().flat_map(Muscles::iter).map(|muscle| muscle.period).reduce(f64::max)
+}
+
+fn run(body: &BodyParts<'_>, dt: f64) -> Outcome {
+    if body.on_axis() { run_in::<1>(body, dt) } else { run_in::<3>(body, dt) }
+}
+
+fn run_in<const D: usize>(body: &BodyParts<'_>, dt: f64) -> Outcome {
+    let [least, most] = STEPS;
+    let steps = (CYCLES * period(body).unwrap_or(0.0) / dt).clamp(least, most) as u64;
+    let mut model = Model::<f64, D>::new(body, [], dt);
+    let mut state = State::<f64, D>::new(body.particles.len());
+    state.set_lane(0, body.particles);
+    let mut particles = body.particles.clone();
+    let directions = directions(body, &particles);
+    let most_energy = squeezed(body);
+    let timeline = Timeline { dt, base_step: 0, base_time: 0.0 };
+    let mut outcome = Outcome::default();
+    for step in 0..steps {
+        let method = body.method;
+        Advance { model: &mut model, state: &mut state, method, timeline, first: step, steps: 1 }.run();
+        outcome.refused = model.has_refused(0);
+        outcome.exploded = model.has_exploded(0) || model.explosion(&state, 0).is_some();
+        if outcome.refused || outcome.exploded {
+            break;
+        }
+        state.write_lane(0, &mut particles);
+        let now = BodyParts { particles: &particles, ..*body };
+        outcome.flipped |= directions.iter().zip(self::directions(&now, &particles)).any(|(a, b)| a.dot(b) < 0.0);
+        if energy(&now, timeline.time_at(step + 1)) > most_energy {
+            outcome.exploded = true;
+            break;
+        }
+    }
+    outcome
+}
+
+fn directions(body: &BodyParts<'_>, particles: &Particles) -> Vec<DVec3> {
+    let position = |end| particles.position(end).unwrap_or(DVec3::ZERO);
+    body.springs.ends().iter().map(|&[a, b]| position(b) - position(a)).collect()
+}
+
+/// Elastic energy, and kinetic energy about the centre of mass.
+fn energy(body: &BodyParts<'_>, time: f64) -> f64 {
+    let mass: f64 = body.particles.masses().iter().sum();
+    let whole = if mass > 0.0 { 0.5 * momentum(body.particles).length_squared() / mass } else { 0.0 };
+    elastic_energy(body, time) + kinetic_energy(body.particles) - whole
+}
+
+/// What all springs hold when they are squeezed to no length with their muscles at their longest; infinite where no spring holds anything.
+fn squeezed(body: &BodyParts<'_>) -> f64 {
+    let amplitude = body.muscles.into_iter().flat_map(Muscles::iter).map(|muscle| muscle.amplitude).fold(0.0, f64::max);
+    let energy = |length: f64, stiffness: f64| 0.5 * stiffness * length * length;
+    let all: f64 =
+        body.springs.iter().map(|spring| energy((1.0 + amplitude) * spring.rest_length, spring.stiffness)).sum();
+    if all > 0.0 { all } else { f64::INFINITY }
+}

@@ -1,0 +1,331 @@
+//! How large a step may be: closed forms, eigenvalues, the step's own growth and the cheap bound against each other.
+
+use bevy::math::DVec3;
+use wriggle::{
+    body::{MassDamping, Particle, ParticleId, Particles, Spring, Springs},
+    lab::limits::{growth, limits, linearised_limit, predicted_limit, scene_limit},
+    mechanics::{
+        BodyParts,
+        integrators::{Method, StickRule},
+        is_stretched,
+    },
+};
+
+use crate::support::Worm;
+
+fn parts<'a>((particles, springs): &'a (Particles, Springs), method: Method) -> BodyParts<'a> {
+    BodyParts {
+        particles,
+        springs,
+        muscles: None,
+        friction: None,
+        coulomb: None,
+        gravity: None,
+        ground: None,
+        mass_damping: None,
+        method,
+        stick: StickRule::InStages,
+    }
+}
+
+/// A mass of 1 on a pinned spring of stiffness 1.
+fn oscillator(ratio: f64) -> (Particles, Springs) {
+    let pinned = Particle { pinned: true, ..Particle::at(DVec3::ZERO) };
+    let particles = Particles::new([pinned, Particle::at(DVec3::X)]).unwrap();
+    let ends = [ParticleId(0), ParticleId(1)];
+    let spring = Spring { ends, stiffness: 1.0, damping: 2.0 * ratio, rest_length: 1.0 };
+    let springs = Springs::new([spring], &particles).unwrap();
+    (particles, springs)
+}
+
+const RATIOS: [f64; 6] = [0.0, 0.1, 0.5, 1.0, 2.0, 5.0];
+
+/// The largest ω·dt of one oscillator by damping ratio, by the closed forms.
+fn closed_forms(method: Method) -> Option<[f64; 6]> {
+    let kicks = [2.0, 1.80998, 1.23607, 0.82843, 0.47214, 0.19804];
+    Some(match method.name() {
+        "ExplicitEuler" => [0.0, 0.2, 1.0, 2.0, 0.53590, 0.20204],
+        "SemiImplicitEuler" | "StormerVerlet" | "DampedVerlet" => kicks,
+        "Leapfrog" => [2.0; 6],
+        "RungeKutta2" => [0.0, 1.04975, 2.0, 2.0, 0.53590, 0.20204],
+        "RungeKutta4" => [2.82843, 2.95085, 2.62254, 2.78529, 0.74632, 0.28137],
+        "Xpbd" | "ImplicitMidpoint" | "ImplicitEuler" => [f64::INFINITY; 6],
+        _ => return None,
+    })
+}
+
+/// Within 2 %, and within 0.02 of the time of the fastest rate where the limit is 0.
+fn agree(found: f64, expected: f64, rate: f64) -> bool {
+    found == expected || if expected == 0.0 { found * rate <= 0.02 } else { (found / expected - 1.0).abs() <= 0.02 }
+}
+
+#[test]
+fn one_oscillator_has_the_limit_of_the_closed_form_by_every_method() {
+    for method in Method::ALL {
+        let Some(expected) = closed_forms(method) else { continue };
+        for (ratio, expected) in RATIOS.into_iter().zip(expected) {
+            let body = oscillator(ratio);
+            let body = parts(&body, method);
+            let found = linearised_limit(&body).unwrap();
+            assert!(agree(found, expected, 1.0), "{method:?}, ζ {ratio}: found {found}, closed form {expected}");
+            if let Some(predicted) = predicted_limit(&body) {
+                let near = predicted == expected || (predicted / expected - 1.0).abs() < 1e-5;
+                assert!(near, "{method:?}, ζ {ratio}: predicted {predicted}, closed form {expected}");
+            }
+        }
+    }
+}
+
+#[test]
+fn damped_verlet_with_a_fixed_part_is_stable_up_to_its_closed_form() {
+    for (part, expected) in [(0.05, 1.97484), (0.1, 1.94936), (0.5, 1.73205)] {
+        let body = oscillator(0.0);
+        let mass_damping = Some(MassDamping::per_step(part).unwrap());
+        let body = BodyParts { mass_damping, ..parts(&body, Method::DampedVerlet) };
+        for limit in [predicted_limit(&body), linearised_limit(&body)] {
+            assert!((limit.unwrap() / expected - 1.0).abs() < 3e-4, "λ {part}: {limit:?}, expected {expected}");
+        }
+    }
+    // As a rate, λ = 1 − e^(−ch) shrinks with the step: θ² = 4 − 2λ(θ) where c = ω.
+    let body = oscillator(0.0);
+    let body = BodyParts { mass_damping: Some(MassDamping::rate(1.0).unwrap()), ..parts(&body, Method::DampedVerlet) };
+    let theta = linearised_limit(&body).unwrap();
+    assert!((theta * theta - 4.0 - 2.0 * libm::expm1(-theta)).abs() < 1e-3, "{theta}");
+    assert!((predicted_limit(&body).unwrap() / theta - 1.0).abs() < 1e-3);
+}
+
+#[test]
+fn predicted_and_linearised_limits_of_the_worm_agree() {
+    for method in Method::ALL {
+        for damping in [0.0, 0.05, 0.9, 3.0, 12.0] {
+            for (front, mass_damping) in [(1.0, None), (6.0, None), (1.0, Some(0.4)), (6.0, Some(3.0))] {
+                let mut body = Worm { damping, method, ..Worm::GARDEN }.body();
+                let id = wriggle::body::SpringId(1);
+                let spring = body.springs.get(id).unwrap();
+                // Only the stiffness: damping no longer goes with it.
+                body.springs.set(id, Spring { stiffness: front * spring.stiffness, ..spring }).unwrap();
+                let mass_damping = mass_damping.map(|rate| MassDamping::rate(rate).unwrap());
+                let body = BodyParts { mass_damping, ..body.parts() };
+                let Some(predicted) = predicted_limit(&body) else { continue };
+                let (a, b) = (1.5, 1.5 * front);
+                let rate = f64::sqrt(a + b + f64::sqrt(a * a + b * b - a * b));
+                let found = linearised_limit(&body).unwrap();
+                assert!(
+                    agree(found, predicted, rate),
+                    "{method:?}, D {damping}, front × {front}, {mass_damping:?}: {predicted} and {found}"
+                );
+            }
+        }
+    }
+}
+
+/// Positions at rest and the springs between them.
+type Shape = (Vec<DVec3>, Vec<[u32; 2]>);
+
+fn body_of(positions: Vec<DVec3>, edges: &[[u32; 2]], spring: impl Fn(usize) -> (f64, f64)) -> (Particles, Springs) {
+    let particles = Particles::new(
+        positions
+            .iter()
+            .enumerate()
+            .map(|(i, &position)| Particle { mass: 1.0 + 0.3 * (i % 3) as f64, ..Particle::at(position) }),
+    )
+    .unwrap();
+    let springs = Springs::new(
+        edges.iter().enumerate().map(|(i, &[a, b])| {
+            let (stiffness, damping) = spring(i);
+            let rest_length = positions[a as usize].distance(positions[b as usize]);
+            Spring { ends: [ParticleId(a), ParticleId(b)], stiffness, damping, rest_length }
+        }),
+        &particles,
+    )
+    .unwrap();
+    (particles, springs)
+}
+
+/// The corners of an n³ block and the edges between all that are at most √3 apart.
+fn block(n: u32) -> Shape {
+    let at = |i: u32| DVec3::new(f64::from(i % n), f64::from(i / n % n), f64::from(i / n / n));
+    let positions: Vec<_> = (0..n * n * n).map(at).collect();
+    let pairs = (0..n * n * n).flat_map(|a| (a + 1..n * n * n).map(move |b| [a, b]));
+    let edges = pairs.filter(|&[a, b]| at(a).distance(at(b)) < 1.8).collect();
+    (positions, edges)
+}
+
+/// A triangulated net in the plane, its nodes shaken.
+fn net(side: u32) -> Shape {
+    let mut seed = 7_u32;
+    let mut shake = || {
+        seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        0.5 * (f64::from(seed >> 8) / f64::from(1 << 24) - 0.5)
+    };
+    let positions: Vec<_> = (0..side * side)
+        .map(|i| DVec3::new(f64::from(i % side) + shake(), 0.0, f64::from(i / side) + shake()))
+        .collect();
+    let edges = (0..side * side).flat_map(|i| {
+        let (x, z) = (i % side, i / side);
+        let right = (x + 1 < side).then_some([i, i + 1]);
+        let up = (z + 1 < side).then_some([i, i + side]);
+        let across = (x + 1 < side && z + 1 < side).then_some([i, i + side + 1]);
+        [right, up, across].into_iter().flatten()
+    });
+    (positions.clone(), edges.collect())
+}
+
+fn chain(count: u32) -> Shape {
+    ((0..count).map(|i| DVec3::X * f64::from(i)).collect(), (0..count - 1).map(|i| [i, i + 1]).collect())
+}
+
+/// How the springs of a body are damped.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Damped {
+    /// D = βk.
+    InProportion(f64),
+    /// Every third spring not at all, the others as it comes.
+    Unevenly,
+}
+
+const EVERY_DAMPING: [Damped; 4] =
+    [Damped::InProportion(0.0), Damped::InProportion(0.05), Damped::InProportion(2.0), Damped::Unevenly];
+
+/// A shape with unequal springs, stretched from its rest lengths.
+fn body_in(shape: &Shape, damped: Damped, stretch: f64) -> (Particles, Springs) {
+    let (positions, edges) = shape;
+    let mut body = body_of(positions.clone(), edges, |i| {
+        let stiffness = 1.0 + (i % 4) as f64;
+        match damped {
+            Damped::InProportion(ratio) => (stiffness, ratio * stiffness),
+            Damped::Unevenly => (stiffness, [0.0, 0.3, 2.0][i % 3]),
+        }
+    });
+    for (i, &position) in positions.iter().enumerate() {
+        let id = ParticleId(i as u32);
+        let particle = body.0.get(id).unwrap();
+        body.0.set(id, Particle { position: position * stretch, ..particle }).unwrap();
+    }
+    assert!(stretch == 1.0 || is_stretched(&parts(&body, Method::default()), 0.0));
+    body
+}
+
+/// What is wrong with the bounds of a body: those above the true limit, or below half of it.
+fn wrong_bounds(name: &str, shape: &Shape, damped: Damped, stretch: f64) -> Vec<(Method, String, f64)> {
+    let body = body_in(shape, damped, stretch);
+    let wrong = Method::ALL.into_iter().filter_map(|method| {
+        let body = parts(&body, method);
+        let (truth, bound) = (predicted_limit(&body)?, body.stability_limit(stretch > 1.0));
+        let part = if bound == truth { 1.0 } else { bound / truth };
+        let text =
+            format!("{}: {name}, {damped:?}, stretch {stretch}: {bound:.5} is {part:.4} of {truth:.5}", method.name());
+        (!(0.5..=1.0 + 1e-8).contains(&part)).then_some((method, text, part))
+    });
+    wrong.collect()
+}
+
+fn shapes() -> [(&'static str, Shape); 5] {
+    [
+        ("chain of 2", chain(2)),
+        ("chain of 3", chain(3)),
+        ("chain of 20", chain(20)),
+        ("net", net(4)),
+        ("block of 2", block(2)),
+    ]
+}
+
+/// Everything that is wrong with the bounds of these shapes in these poses.
+fn all_wrong_bounds(stretches: &[f64]) -> Vec<(Method, Damped, f64, String)> {
+    let mut wrong = Vec::new();
+    let mut look = |name: &str, shape: &Shape, damped, stretch| {
+        let found = wrong_bounds(name, shape, damped, stretch);
+        wrong.extend(found.into_iter().map(|(method, text, part)| (method, damped, part, text)));
+    };
+    for (name, shape) in shapes() {
+        for damped in EVERY_DAMPING {
+            stretches.iter().for_each(|&stretch| look(name, &shape, damped, stretch));
+        }
+    }
+    let block = block(3);
+    look("block of 3", &block, Damped::InProportion(0.0), stretches[0]);
+    wrong
+}
+
+fn assert_none(wrong: Vec<(Method, Damped, f64, String)>) {
+    let text: Vec<_> = wrong.iter().map(|(.., text)| text.as_str()).collect();
+    assert!(wrong.is_empty(), "{} wrong:\n{}", wrong.len(), text.join("\n"));
+}
+
+/// Methods of which the bound assumes that every oscillation is damped in proportion to its stiffness.
+const NEED_DAMPING: [Method; 2] = [Method::ExplicitEuler, Method::RungeKutta2];
+
+#[test]
+fn at_rest_the_bound_is_never_above_the_limit_and_at_least_half_of_it() {
+    let mut wrong = all_wrong_bounds(&[1.0]);
+    // Where some springs are not damped, these bounds are safe and no more.
+    let loose = |method| NEED_DAMPING.contains(&method) || method == Method::RungeKutta4;
+    wrong.retain(|(method, damped, part, _)| *part > 1.0 || *damped != Damped::Unevenly || !loose(*method));
+    assert_none(wrong);
+}
+
+#[test]
+fn in_a_stretched_pose_the_bound_is_not_above_the_limit() {
+    let mut wrong = all_wrong_bounds(&[1.5]);
+    wrong.retain(|(method, _, part, _)| *part > 1.0 && !NEED_DAMPING.contains(method));
+    assert_none(wrong);
+}
+
+#[test]
+#[ignore = "the cheap bound does not keep this in space where springs are stretched, nor where some are not damped"]
+fn in_every_pose_the_bound_is_never_above_the_limit_and_at_least_half_of_it() {
+    assert_none(all_wrong_bounds(&[1.0, 1.2, 2.0]));
+}
+
+#[test]
+fn disturbances_die_at_the_bound_by_the_step_itself_and_grow_above_the_prediction() {
+    for (name, shape) in [("chain of 3", chain(3)), ("net", net(4)), ("block of 2", block(2))] {
+        for damped in [Damped::InProportion(0.05), Damped::Unevenly] {
+            let body = body_in(&shape, damped, 1.0);
+            for method in Method::ALL {
+                let body = parts(&body, method);
+                let (bound, predicted) = (body.stability_limit(false), predicted_limit(&body));
+                if bound > 0.0 && bound.is_finite() {
+                    let at = growth(&body, bound * (1.0 - 1e-6)).unwrap();
+                    assert!(at <= 1.0 + 1e-7, "{method:?}, {name}, {damped:?}: {at} at the bound {bound}");
+                }
+                if let Some(predicted) = predicted.filter(|predicted| predicted.is_finite()) {
+                    let (below, above) = (growth(&body, 0.98 * predicted), growth(&body, 1.02 * predicted));
+                    let (below, above) = (below.unwrap(), above.unwrap());
+                    assert!(
+                        below <= 1.0 + 1e-7 && above > 1.0 + 1e-6,
+                        "{method:?}, {name}, {damped:?}: {below} below {predicted}, {above} above"
+                    );
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn without_friction_a_worm_explodes_where_its_step_begins_to_grow() {
+    let mut body = Worm { drag: 0.0, ratchet: false, ..Worm::GARDEN }.body();
+    for method in Method::ALL {
+        body.method = method;
+        let linearised = linearised_limit(&body.parts()).unwrap();
+        let explodes = scene_limit(&body.parts(), linearised).unwrap();
+        // By explicit Euler the muscles drive it far from its pose before its step grows by itself.
+        let least = if method == Method::ExplicitEuler { 0.85 } else { 0.94 };
+        let near = explodes == linearised || (least..1.06).contains(&(explodes / linearised));
+        assert!(near, "{method:?}: explodes at {explodes}, grows from {linearised}");
+    }
+}
+
+#[test]
+fn the_limits_of_the_garden_agree_or_have_a_reason() {
+    let rows = limits(&wriggle::scenes::load("garden").unwrap()).unwrap();
+    assert_eq!(rows.len(), Method::ALL.len());
+    for row in rows {
+        let (Some(linearised), Some(explodes)) = (row.linearised, row.explodes) else { panic!("{row:?}") };
+        assert!(row.predicted.is_none_or(|predicted| agree(linearised, predicted, 2.1)), "{row:?}");
+        // Its modes are damped one by one, so the bound is never above; drag, which it counts, lowers it.
+        assert!(row.bound <= linearised * 1.0002 && row.bound >= 0.5 * linearised, "{row:?}");
+        let near = explodes == linearised || (explodes / linearised - 1.0).abs() <= 0.06;
+        assert_eq!(row.reason.is_none(), near, "{row:?}");
+    }
+}
