@@ -18,6 +18,7 @@
 //! | [`creatures`] | blueprints (data) that become bodies, and the files that they are read from |
 //! | [`physics`] | the plugin: clock, schedule, the systems of a tick, the watch |
 //! | [`scenes`] | scene files that become entities; live parameters; saving |
+//! | [`lab`] | how far methods are from the truth, and what they cost |
 //! | `view` | what is drawn (with the feature `window`) |
 //! | `panel` | what is set and plotted (with the feature `window`) |
 //! | [`cli`] | one file a command |

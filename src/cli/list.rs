@@ -76,7 +76,7 @@ fn row(name: String, title: String, source: &Source) -> Vec<String> {
 }
 
 /// Writes columns as wide as their widest cell; a row of one cell is a heading.
-fn write_table(out: &mut impl Write, rows: &[Vec<String>]) -> io::Result<()> {
+pub(super) fn write_table(out: &mut impl Write, rows: &[Vec<String>]) -> io::Result<()> {
     let mut widths = Vec::new();
     for row in rows.iter().filter(|row| row.len() > 1) {
         widths.resize(widths.len().max(row.len()), 0);

@@ -12,6 +12,7 @@ use crate::{
 };
 
 mod chart;
+mod choose;
 mod headless;
 mod list;
 mod play;
@@ -47,6 +48,8 @@ enum Command {
     Run(run::RunArguments),
     /// Measure what accuracy costs with every method, and draw it
     Chart(chart::ChartArguments),
+    /// Find the cheapest method and step whose error a scene can afford
+    Choose(choose::ChooseArguments),
 }
 
 /// How a command ended.
@@ -107,6 +110,7 @@ pub fn main() -> ExitCode {
         Some(Command::Shot(arguments)) => shot::shot(&arguments),
         Some(Command::Run(arguments)) => run::run(&arguments),
         Some(Command::Chart(arguments)) => chart::chart(&arguments),
+        Some(Command::Choose(arguments)) => choose::choose(&arguments),
     };
     match outcome {
         Ok(Outcome::Done) => ExitCode::SUCCESS,

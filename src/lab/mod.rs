@@ -2,6 +2,7 @@
 
 mod cache;
 pub mod chart;
+mod choose;
 mod error;
 mod gallery;
 mod hash;
@@ -16,6 +17,7 @@ mod sweep;
 mod table;
 
 pub use cache::Cache;
+pub use choose::{Candidate, Choice, Search, cheapest, choose, frontier};
 pub use error::LabError;
 pub use gallery::{Gallery, GalleryError};
 pub use page::page;

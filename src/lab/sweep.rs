@@ -152,7 +152,7 @@ fn ladder(problem: &Problem, method: Method, stick: StickRule, options: &SweepOp
 }
 
 /// About how many spring updates a run takes.
-fn work(problem: &Problem, method: Method, dt: f64) -> f64 {
+pub(super) fn work(problem: &Problem, method: Method, dt: f64) -> f64 {
     /// Of methods that do not know before how often they evaluate the forces.
     const MANY: u64 = 20;
     let springs: usize = problem.bodies.iter().map(|body| body.springs.len().max(body.particles.len())).sum();

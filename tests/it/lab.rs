@@ -4,8 +4,11 @@ use std::fs;
 
 use bevy::math::DVec3;
 use wriggle::{
-    body::{Particle, ParticleId, Particles, Spring, Springs},
-    lab::{Cache, Problem, ProblemBody, Reference, Setting, SweepOptions, measure, work_precision},
+    body::{Gravity, Muscle, Muscles, Particle, ParticleId, Particles, SpineFriction, Spring, SpringId, Springs, Wave},
+    lab::{
+        Cache, Candidate, Problem, ProblemBody, Reference, Search, Setting, SweepOptions, cheapest, choose, frontier,
+        measure, work_precision,
+    },
     mechanics::integrators::{Method, StickRule},
     scenes,
 };
@@ -34,17 +37,7 @@ fn oscillator(stiffness: f64, damping: f64, stretch: f64) -> Problem {
     let particles = Particles::new([at(0.0, 1.0), at(1.0 + stretch, 3.0)]).unwrap();
     let spring = Spring { ends: [ParticleId(0), ParticleId(1)], stiffness, damping, rest_length: 1.0 };
     let springs = Springs::new([spring], &particles).unwrap();
-    let body = ProblemBody {
-        name: "oscillator".into(),
-        particles,
-        springs,
-        muscles: None,
-        friction: None,
-        gravity: None,
-        ground: None,
-        mass_damping: None,
-    };
-    Problem::new("oscillator", vec![body], SETTING)
+    Problem::new("oscillator", vec![loose(particles, springs)], SETTING)
 }
 
 #[test]
@@ -118,6 +111,127 @@ fn a_turned_worm_has_the_reference_of_the_straight_one() {
             }
         }
     }
+}
+
+/// A body that is no worm.
+fn loose(particles: Particles, springs: Springs) -> ProblemBody {
+    ProblemBody {
+        name: "body".into(),
+        particles,
+        springs,
+        muscles: None,
+        friction: None,
+        gravity: None,
+        ground: None,
+        mass_damping: None,
+    }
+}
+
+#[test]
+fn the_reference_of_a_square_wave_switches_when_it_does() {
+    // Half a period of 1 long, the rest length is 1.2, then 0.8, and so on: in each, x'' = −κ(x − L) − γx' from where the last ended.
+    let (stiffness, damping, amplitude) = (5.0, 0.4, 0.2);
+    let mut problem = oscillator(stiffness, damping, 0.0);
+    let muscle = Muscle { spring: SpringId(0), wave: Wave::Square, amplitude, period: 1.0, phase: 0.0, ramp: 0.0 };
+    let body = &mut problem.bodies[0];
+    body.muscles = Some(Muscles::new([muscle], &body.springs).unwrap());
+    let problem = Problem::new("square", problem.bodies, SETTING);
+    assert_eq!(problem.duration, 10.0);
+    let reference = Reference::solve(&problem).unwrap();
+    assert!(reference.error() < 1e-12, "{:e}", reference.error());
+    let (kappa, gamma) = (stiffness * 4.0 / 3.0, damping * 4.0 / 3.0);
+    let nu = f64::sqrt(kappa - 0.25 * gamma * gamma);
+    let after = |(x, v): (f64, f64), rest: f64, t: f64| {
+        let (d, c, s, e) = (x - rest, libm::cos(nu * t), libm::sin(nu * t), libm::exp(-0.5 * gamma * t));
+        (rest + e * (d * c + (v + 0.5 * gamma * d) / nu * s), e * (v * c - (0.5 * gamma * v + kappa * d) / nu * s))
+    };
+    let (mut state, mut half) = ((1.0, 0.0), 0);
+    for (sample, t) in problem.times().into_iter().enumerate() {
+        let rest = |half: i32| if half % 2 == 0 { 1.2 } else { 0.8 };
+        while t > 0.5 * f64::from(half + 1) {
+            (state, half) = (after(state, rest(half), 0.5), half + 1);
+        }
+        let exact = after(state, rest(half), t - 0.5 * f64::from(half)).0;
+        let at = reference.positions(0, sample);
+        let length = at[1].x - at[0].x;
+        assert!((length - exact).abs() < 1e-10, "at {t}: {length} is not {exact}");
+    }
+}
+
+#[test]
+fn the_reference_of_a_swinging_mass_keeps_its_energy() {
+    let pin = Particle { pinned: true, ..Particle::at(DVec3::Y) };
+    let particles = Particles::new([pin, Particle::at(DVec3::new(0.8, 0.9, 0.3))]).unwrap();
+    let spring = Spring { ends: [ParticleId(0), ParticleId(1)], stiffness: 60.0, damping: 0.0, rest_length: 0.9 };
+    let springs = Springs::new([spring], &particles).unwrap();
+    let body = ProblemBody { gravity: Some(Gravity::new(9.81).unwrap()), ..loose(particles, springs) };
+    let problem = Problem::new("swing", vec![body], SETTING);
+    let reference = Reference::solve(&problem).unwrap();
+    assert!(reference.error() < 1e-9, "{:e}", reference.error());
+    let energy = |x: DVec3, v: DVec3| {
+        let stretch = x.distance(DVec3::Y) - 0.9;
+        0.5 * v.length_squared() + 9.81 * x.y + 30.0 * stretch * stretch
+    };
+    let start = energy(DVec3::new(0.8, 0.9, 0.3), DVec3::ZERO);
+    let end = energy(reference.positions(0, 999)[1], reference.last_velocities(0)[1]);
+    assert!((end - start).abs() < 1e-9, "{start} has become {end}");
+    assert_eq!(reference.positions(0, 999)[0], DVec3::Y);
+}
+
+#[test]
+fn runs_of_a_bent_crawler_come_to_its_reference() {
+    // Its spine turns while masses are held, grip and drag act, and a cut wave has kinks: all that a straight worm does not show.
+    let at = [DVec3::ZERO, DVec3::new(1.0, 0.0, 0.2), DVec3::new(1.9, 0.0, -0.3), DVec3::new(2.9, 0.0, 0.1)];
+    let particles = Particles::new(at.map(Particle::at)).unwrap();
+    let spring = |[a, b]: [u32; 2]| Spring {
+        ends: [ParticleId(a), ParticleId(b)],
+        stiffness: 3.0,
+        damping: 0.6,
+        rest_length: at[a as usize].distance(at[b as usize]),
+    };
+    let springs = Springs::new([[0, 1], [1, 2], [2, 3], [0, 2], [1, 3]].map(spring), &particles).unwrap();
+    let muscle = |i: u32, amplitude, phase| Muscle {
+        spring: SpringId(i),
+        wave: Wave::Sine,
+        amplitude,
+        period: 2.0,
+        phase,
+        ramp: 0.75,
+    };
+    let muscles = Muscles::new([muscle(0, 0.9, 0.1), muscle(2, 0.3, 0.35), muscle(3, 0.2, 0.6)], &springs).unwrap();
+    let friction = SpineFriction::new((0..4).map(ParticleId), &particles).unwrap();
+    let friction = friction.with_drag(0.4).unwrap().with_grip(2.0).unwrap();
+    let body = ProblemBody { muscles: Some(muscles), friction: Some(friction), ..loose(particles, springs) };
+    let problem = Problem::new("bent", vec![body], SETTING);
+    let reference = Reference::solve(&problem).unwrap();
+    assert!(reference.error() < 1e-11 && reference.events().len() > 20, "{:e}", reference.error());
+    let error = |dt| {
+        let setting = Setting { method: Method::RungeKutta4, stick: StickRule::InStages, dt };
+        measure(&problem, &reference, setting, 1).errors.unwrap().largest
+    };
+    let errors = [0.01, 0.005, 0.0025, 0.00125].map(error);
+    assert!(errors[3] < 2e-4 && errors.windows(2).all(|pair| pair[1] < 0.6 * pair[0]), "{errors:?}");
+}
+
+#[test]
+fn drag_without_a_ratchet_acts_on_forward_sliding_alone() {
+    // A mass on a spring of 1 to a pinned one, drag 0.3: x'' = −x − 0.3·max(x', 0), damped on every second half swing. Each swing forward takes
+    // e^(−0.15·π/ν) of the amplitude with ν² = 1 − 0.15², each swing back nothing.
+    let pin = Particle { pinned: true, ..Particle::at(DVec3::ZERO) };
+    let particles = Particles::new([pin, Particle::at(DVec3::X * 2.5)]).unwrap();
+    let spring = Spring { ends: [ParticleId(0), ParticleId(1)], stiffness: 1.0, damping: 0.0, rest_length: 2.0 };
+    let springs = Springs::new([spring], &particles).unwrap();
+    let friction = SpineFriction::new((0..2).map(ParticleId), &particles).unwrap().with_ratchet(false);
+    let body = ProblemBody { friction: Some(friction.with_drag(0.3).unwrap()), ..loose(particles, springs) };
+    let mut problem = Problem::new("half damped", vec![body], SETTING);
+    let nu = f64::sqrt(1.0 - 0.15 * 0.15);
+    let (back, forward) = (core::f64::consts::PI, core::f64::consts::PI / nu);
+    problem.duration = 2.0 * (back + forward);
+    let reference = Reference::solve(&problem).unwrap();
+    assert!(reference.error() < 1e-12, "{:e}", reference.error());
+    let exact = 2.0 + 0.5 * libm::exp(-0.15 * 2.0 * forward);
+    let end = reference.positions(0, 999)[1].x;
+    assert!((end - exact).abs() < 1e-11, "{end} is not {exact}");
 }
 
 #[test]
@@ -261,4 +375,90 @@ fn a_sweep_has_eight_steps_of_every_method_and_both_settings() {
     assert_eq!((own, chart.setting.dt), (1, 0.0005));
     assert!(chart.points.iter().any(|point| point.errors.is_none()), "nothing blew up");
     assert!(said.last().is_some_and(|last| last.0 == last.1 && last.0 == chart.points.len()));
+}
+
+/// A candidate of a made-up study, told apart from others by its step.
+fn candidate(dt: f64, error: Option<f64>, cost: f64) -> Candidate {
+    Candidate { setting: Setting { dt, ..SETTING }, error, cost }
+}
+
+#[test]
+fn the_cheapest_candidate_within_the_budget_is_chosen() {
+    let cheap_but_bad = candidate(8.0, Some(1.1), 10.0);
+    let cheap_but_blown = candidate(7.0, None, 5.0);
+    let dear = candidate(1.0, Some(0.01), 100.0);
+    let good = candidate(4.0, Some(0.9), 20.0);
+    let as_cheap_and_better = candidate(3.0, Some(0.5), 20.0);
+    let beaten = candidate(2.0, Some(0.6), 30.0);
+    let all = [cheap_but_bad, dear, good, cheap_but_blown, beaten, as_cheap_and_better];
+    assert_eq!(cheapest(&all, 1.0), Some(as_cheap_and_better));
+    assert_eq!(cheapest(&all, 0.1), Some(dear));
+    assert_eq!(cheapest(&all, 2.0), Some(cheap_but_bad));
+    assert_eq!(cheapest(&all, 1e-3), None);
+    assert_eq!(frontier(&all), [cheap_but_bad, as_cheap_and_better, dear]);
+}
+
+#[test]
+fn the_choice_for_the_exact_worm_keeps_its_promises() {
+    let mut problem = worm(Worm::EXACT.body());
+    problem.budget = 1e-2;
+    let reference = Reference::solve(&problem).unwrap();
+    let mut heard = Vec::new();
+    let found =
+        choose(&problem, &reference, Search::Cheapest, &mut |done, total, _| heard.push((done, total))).unwrap();
+    let Candidate { setting, error, cost } = found.choice;
+    assert!(error.unwrap() <= 1e-2 && cost > 0.0, "{found:?}");
+    assert!(setting.dt <= 0.5 * problem.stability_limit(setting.method, setting.stick));
+    for part in [1.0, 0.9, 0.8] {
+        let errors = measure(&problem, &reference, Setting { dt: part * setting.dt, ..setting }, 1).errors.unwrap();
+        assert!(errors.largest <= error.unwrap());
+    }
+    // An order of one: the step of its method that is good enough is known, and dearer.
+    assert!(found.document.error.unwrap() < 1.2e-3 && (found.document.cost - 40_000.0).abs() < 1.0, "{found:?}");
+    assert!(cost < 2000.0, "{found:?}");
+    assert_eq!(heard.last(), Some(&(Method::ALL.len(), Method::ALL.len())));
+    // What nothing can keep is said.
+    (problem.budget, problem.duration) = (0.0, 0.1);
+    let reference = Reference::solve(&problem).unwrap();
+    let error = choose(&problem, &reference, Search::Cheapest, &mut |_, _, _| {}).unwrap_err();
+    assert!(error.to_string().contains("worm: no method keeps the error within"), "{error}");
+}
+
+#[test]
+fn the_command_prints_its_choice_and_keeps_the_reference() {
+    let folder = tempfile::tempdir().unwrap();
+    // A worm so quick that all of its ten cycles are a few thousand steps.
+    let text = r#"Creature(version: 1,
+      body: Raw(
+        particles: [(position: (0, 0, 0), mass: 1), (position: (1, 0, 0), mass: 1)],
+        springs: [(ends: (0, 1), stiffness: 900, damping: 9, rest_length: 1,
+                   muscle: (wave: Sine, amplitude: 0.25, period: 0.1, phase: 0, ramp: 0))],
+        spine: [0, 1]),
+      friction: (ratchet: true, drag: 1, grip: 0))"#;
+    fs::write(folder.path().join("quick.creature.ron"), text).unwrap();
+    let wriggle = |arguments: &[&str]| {
+        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_wriggle"));
+        command.args(arguments).current_dir(folder.path()).env("WRIGGLE_CACHE", folder.path().join("kept"));
+        command.output().unwrap()
+    };
+    let output = wriggle(&["choose", "quick.creature.ron", "--json"]);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    let found: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let budget = found["budget"].as_f64().unwrap();
+    let chosen = &found["choice"];
+    assert!(chosen["error"].as_f64().unwrap() <= budget);
+    assert!(found["frontier"].as_array().unwrap().contains(chosen));
+    let costs: Vec<_> = found["frontier"].as_array().unwrap().iter().map(|row| row["cost"].as_f64().unwrap()).collect();
+    assert!(costs.is_sorted() && costs.len() > 3, "{costs:?}");
+    assert_eq!(found["document"]["setting"]["dt"], 0.0005);
+    assert_eq!(fs::read_dir(folder.path().join("kept")).unwrap().count(), 1);
+    let output = wriggle(&["choose", "quick.creature.ron"]);
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert!(
+        text.contains("cheapest within the budget") && text.contains(chosen["setting"]["method"].as_str().unwrap())
+    );
+    // A scene that is not there is the same error as everywhere.
+    let said = |command| String::from_utf8(wriggle(&[command, "gardn"]).stderr).unwrap();
+    assert_eq!(wriggle(&["choose", "gardn"]).status.code(), Some(2));
+    assert_eq!(said("choose"), said("run"));
 }

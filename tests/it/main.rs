@@ -9,6 +9,7 @@ mod determinism;
 mod exact_worm;
 mod files;
 mod friction;
+mod gallery;
 mod garden_worm;
 mod lab;
 mod laws;

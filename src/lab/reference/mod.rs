@@ -3,9 +3,11 @@
 //! Each body is followed twice, piece by piece between events that are located ([`follow`]): by DOP853 at a tolerance of 1e-12, which is the reference, and
 //! by collocation in small fixed steps, which confirms it. Both see the same forces, and nothing else is shared.
 
+mod events;
 mod flow;
 mod follow;
 mod kinks;
+mod piece;
 mod schemes;
 
 use bevy::math::DVec3;

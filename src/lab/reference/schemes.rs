@@ -8,7 +8,7 @@ use differential_equations::{
     status::Status,
 };
 
-use super::flow::Piece;
+use super::piece::Piece;
 
 /// Integrates smooth pieces.
 pub(super) trait Scheme<const D: usize> {

@@ -1,0 +1,95 @@
+//! `wriggle choose`: the cheapest method and step that are good enough for a scene.
+
+use std::io::{self, IsTerminal, Write};
+
+use clap::Args;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+use super::{CliError, Outcome, list::write_table};
+use crate::{
+    lab::{Cache, Candidate, Choice, Problem, Search, choose as find},
+    mechanics::integrators::StickRule,
+    scenes,
+};
+
+#[derive(Args, Debug)]
+pub(super) struct ChooseArguments {
+    /// A scene or creature by name, or a file (`*.scene.ron`, `*.creature.ron`)
+    scene: String,
+    /// Print what was found as one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+pub(super) fn choose(arguments: &ChooseArguments) -> Result<Outcome, CliError> {
+    let scene = scenes::load(&arguments.scene)?;
+    for warning in &scene.warnings {
+        eprintln!("warning: {warning}");
+    }
+    let problem = Problem::of(&scene)?;
+    let bar = progress();
+    bar.set_message("reference");
+    let reference = Cache::of_platform().reference(&problem)?;
+    let choice = find(&problem, &reference, Search::Frontier, &mut |done, total, what| {
+        bar.set_length(total as u64);
+        bar.set_position(done as u64);
+        bar.set_message(what.to_owned());
+    })?;
+    bar.finish_and_clear();
+    let mut out = io::stdout().lock();
+    if arguments.json {
+        let text = serde_json::to_string_pretty(&choice).map_err(|error| CliError::stdout(error.into()))?;
+        writeln!(out, "{text}").and_then(|()| out.flush()).map_err(CliError::stdout)?;
+    } else {
+        print(&mut out, &choice).and_then(|()| out.flush()).map_err(CliError::stdout)?;
+    }
+    Ok(Outcome::Done)
+}
+
+fn print(out: &mut impl Write, found: &Choice) -> io::Result<()> {
+    writeln!(out, "{}: an error of at most {:.4e} over ten cycles", found.scene, found.budget)?;
+    let mut rows = vec![vec!["  frontier".to_owned()]];
+    rows.push(["  method", "friction", "dt", "cost", "error", "of budget"].map(String::from).to_vec());
+    rows.extend(found.frontier.iter().map(|candidate| row(candidate, found)));
+    rows.push(vec!["  the scene's own setting, and the document's".into()]);
+    rows.extend([&found.own, &found.document].map(|candidate| row(candidate, found)));
+    rows.push(vec!["  cheapest within the budget".into()]);
+    rows.push(row(&found.choice, found));
+    write_table(out, &rows)?;
+    writeln!(
+        out,
+        "cost: force evaluations; error: the worst over dt, 0.9 dt and 0.8 dt; the scene's setting costs {:.2} times the cheapest",
+        found.own.cost / found.choice.cost
+    )
+}
+
+fn row(candidate: &Candidate, found: &Choice) -> Vec<String> {
+    let Candidate { setting, error, cost } = candidate;
+    let (error, part) = match error {
+        Some(error) => (format!("{error:.3e}"), format!("{:.3}", error / found.budget)),
+        None => ("blows up".into(), "-".into()),
+    };
+    let stick = match setting.stick {
+        StickRule::InStages => "in stages",
+        StickRule::EndOfStep => "at the end",
+    };
+    let mark = if candidate == &found.choice { "* " } else { "  " };
+    vec![
+        format!("{mark}{}", setting.method.name()),
+        stick.into(),
+        setting.dt.to_string(),
+        format!("{cost:.0}"),
+        error,
+        part,
+    ]
+}
+
+/// Shown on a terminal only.
+fn progress() -> ProgressBar {
+    if !io::stderr().is_terminal() {
+        return ProgressBar::hidden();
+    }
+    let style =
+        ProgressStyle::with_template("{wide_bar} {pos}/{len}  {msg}").unwrap_or_else(|_| ProgressStyle::default_bar());
+    ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr()).with_style(style)
+}

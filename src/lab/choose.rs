@@ -1,0 +1,231 @@
+//! Which method and step are the cheapest that are good enough.
+//!
+//! With friction an error is not monotone in the step: a run may be good by accident. The error of a candidate is therefore the worst over its
+//! step and over 0.9 and 0.8 of it. Its cost is counted in evaluations of the forces; that of methods which do more between evaluations, or whose
+//! evaluations cannot be counted before, is the time they take in units of an evaluation of RK4.
+
+use serde::Serialize;
+
+use crate::mechanics::integrators::{Method, StickRule};
+
+use super::{
+    LabError, Problem, Reference, Setting,
+    run::{ends_differ, errors, stepping, steps_to},
+    sweep::{DOCUMENT, work},
+};
+
+/// A method with a step, judged.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Candidate {
+    /// The method and its step.
+    pub setting: Setting,
+    /// The largest error of any position over the step and 0.9 and 0.8 of it, in lengths; `None` where one of them blows up.
+    pub error: Option<f64>,
+    /// What a run of the problem costs, in evaluations of the forces of a body by RK4.
+    pub cost: f64,
+}
+
+/// What was found for a problem.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Choice {
+    /// The scene's name.
+    pub scene: String,
+    /// The error that the scene can afford (lengths).
+    pub budget: f64,
+    /// The cheapest candidate within the budget.
+    pub choice: Candidate,
+    /// The scene's own setting, judged in the same way.
+    pub own: Candidate,
+    /// The document's setting, judged in the same way.
+    pub document: Candidate,
+    /// The candidates that no other beats in both error and cost, from the cheapest up.
+    pub frontier: Vec<Candidate>,
+    /// How far the reference is from what confirms it (lengths).
+    pub reference_error: f64,
+}
+
+/// How far to look.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Search {
+    /// Only as far as the cheapest can be; the frontier is incomplete.
+    Cheapest,
+    /// Every method down to a thousandth of the budget, or to where others beat it by far, for the whole frontier.
+    Frontier,
+}
+
+/// The cheapest candidate whose error is within the budget; of two that cost the same, the more exact.
+pub fn cheapest(candidates: &[Candidate], budget: f64) -> Option<Candidate> {
+    let fits = candidates.iter().filter(|candidate| candidate.error.is_some_and(|error| error <= budget));
+    fits.copied().min_by(order)
+}
+
+/// The candidates that no other beats in both error and cost, from the cheapest up.
+pub fn frontier(candidates: &[Candidate]) -> Vec<Candidate> {
+    let mut sorted: Vec<_> = candidates.iter().copied().filter(|candidate| candidate.error.is_some()).collect();
+    sorted.sort_by(order);
+    let mut least = f64::INFINITY;
+    sorted.retain(|candidate| {
+        let error = candidate.error.unwrap_or(f64::INFINITY);
+        let better = error < least;
+        least = least.min(error);
+        better
+    });
+    sorted
+}
+
+fn order(a: &Candidate, b: &Candidate) -> core::cmp::Ordering {
+    let error = |candidate: &Candidate| candidate.error.unwrap_or(f64::INFINITY);
+    a.cost.total_cmp(&b.cost).then(error(a).total_cmp(&error(b)))
+}
+
+/// Finds the cheapest method and step within the problem's budget, with a step of at most half of the stability limit. `progress` hears how many of how
+/// many methods are done and which comes next.
+///
+/// # Errors
+/// If nothing that was tried is within the budget.
+pub fn choose(
+    problem: &Problem,
+    reference: &Reference,
+    search: Search,
+    progress: &mut dyn FnMut(usize, usize, &str),
+) -> Result<Choice, LabError> {
+    let judge = Judge { problem, reference, evaluation: seconds_an_evaluation(problem) };
+    let mut methods = Method::ALL;
+    // Those that are likely to be cheap come first, so that the others need not be followed far.
+    methods.sort_by_key(|method| core::cmp::Reverse(method.about().order));
+    let mut candidates = Vec::new();
+    for (done, method) in methods.into_iter().enumerate() {
+        progress(done, methods.len(), method.name());
+        for stick in [StickRule::InStages, StickRule::EndOfStep] {
+            let steps = steps(problem, method, stick);
+            let Some(&middle) = steps.get(steps.len() / 2) else { continue };
+            let in_stages = Setting { method, stick: StickRule::InStages, dt: middle };
+            if stick == StickRule::InStages || ends_differ(problem, in_stages) {
+                follow(&judge, method, stick, &steps, search, &mut candidates);
+            }
+        }
+    }
+    progress(methods.len(), methods.len(), "done");
+    let choice = cheapest(&candidates, problem.budget)
+        .ok_or_else(|| LabError::NothingFits { scene: problem.name.clone(), budget: problem.budget })?;
+    Ok(Choice {
+        scene: problem.name.clone(),
+        budget: problem.budget,
+        choice,
+        own: judge.candidate(problem.setting),
+        document: judge.candidate(DOCUMENT),
+        frontier: frontier(&candidates),
+        reference_error: reference.error(),
+    })
+}
+
+/// Judges the steps of one method from the largest down, as far as they can matter.
+fn follow(
+    judge: &Judge<'_>,
+    method: Method,
+    stick: StickRule,
+    steps: &[f64],
+    search: Search,
+    candidates: &mut Vec<Candidate>,
+) {
+    /// Nobody waits for more spring updates in one run.
+    const MOST_WORK: f64 = 1e9;
+    /// Frontiers end at so much of the budget.
+    const LITTLE: f64 = 1e-3;
+    /// After two octaves of steps beaten by far, smaller ones will not change that.
+    const HOPELESS: usize = 8;
+    /// Beaten by far: a cheaper candidate has so much less of an error.
+    const FAR: f64 = 4.0;
+    let budget = judge.problem.budget;
+    let mut beaten = 0;
+    for &dt in steps {
+        let setting = Setting { method, stick, dt };
+        if work(judge.problem, method, dt) > MOST_WORK {
+            return;
+        }
+        if search == Search::Cheapest
+            && cheapest(candidates, budget).is_some_and(|best| judge.cost(setting) > best.cost)
+        {
+            return;
+        }
+        let candidate = judge.candidate(setting);
+        let by_far = |other: &Candidate| {
+            other.cost <= candidate.cost
+                && other.error.is_some_and(|least| candidate.error.is_none_or(|error| error >= FAR * least))
+        };
+        beaten = if candidates.iter().any(by_far) { beaten + 1 } else { 0 };
+        candidates.push(candidate);
+        if beaten == HOPELESS {
+            return;
+        }
+        let enough = match search {
+            Search::Cheapest => budget,
+            Search::Frontier => LITTLE * budget,
+        };
+        if candidate.error.is_some_and(|error| error <= enough) {
+            return;
+        }
+    }
+}
+
+/// The steps to try, from half of the stability limit down in fourths of octaves, in round numbers.
+fn steps(problem: &Problem, method: Method, stick: StickRule) -> Vec<f64> {
+    const A_STEP: f64 = 0.840_896_415_253_714_5; // 2^(−¼)
+    let without_limit = problem.period.unwrap_or(problem.duration / 10.0) / 8.0;
+    let largest = (0.5 * problem.stability_limit(method, stick)).min(without_limit);
+    if largest <= 0.0 {
+        return Vec::new();
+    }
+    let down = core::iter::successors(Some(largest), |dt| Some(dt * A_STEP));
+    let mut steps: Vec<_> = down.take_while(|&dt| dt > 0.25 * DOCUMENT.dt).map(rounded_down).collect();
+    steps.dedup();
+    steps
+}
+
+/// The largest number of two digits that is not above.
+fn rounded_down(dt: f64) -> f64 {
+    let unit = libm::pow(10.0, libm::floor(libm::log10(dt)) - 1.0);
+    // Read back from its digits, it is the number that one would write.
+    format!("{:.1e}", (dt / unit + 1e-9).floor() * unit).parse().unwrap_or(dt)
+}
+
+/// What candidates are judged with.
+struct Judge<'a> {
+    problem: &'a Problem,
+    reference: &'a Reference,
+    /// How many seconds RK4 takes for an evaluation.
+    evaluation: f64,
+}
+
+impl Judge<'_> {
+    fn candidate(&self, setting: Setting) -> Candidate {
+        let error = [1.0, 0.9, 0.8].into_iter().try_fold(0.0, |worst, part| {
+            let errors = errors(self.problem, self.reference, Setting { dt: part * setting.dt, ..setting })?;
+            Some(f64::max(worst, errors.largest))
+        });
+        Candidate { setting, error, cost: self.cost(setting) }
+    }
+
+    fn cost(&self, setting: Setting) -> f64 {
+        let steps = steps_to(self.problem.duration, setting.dt);
+        match setting.method.about().evaluations {
+            Some(evaluations) => (steps * evaluations) as f64 * self.problem.bodies.len() as f64,
+            None => least_seconds(self.problem, setting, steps) / self.evaluation,
+        }
+    }
+}
+
+fn seconds_an_evaluation(problem: &Problem) -> f64 {
+    let method = Method::RungeKutta4;
+    let limit = problem.stability_limit(method, StickRule::InStages).min(0.01 * problem.duration);
+    let setting = Setting { method, stick: StickRule::InStages, dt: 0.5 * limit };
+    /// Enough to be timed.
+    const STEPS: u64 = 2000;
+    let (_, evaluations) = stepping(problem, setting, STEPS);
+    least_seconds(problem, setting, STEPS) / evaluations.max(1) as f64
+}
+
+/// The shortest of a few runs.
+fn least_seconds(problem: &Problem, setting: Setting, steps: u64) -> f64 {
+    (0..5).map(|_| stepping(problem, setting, steps).0).fold(f64::INFINITY, f64::min)
+}
