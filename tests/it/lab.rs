@@ -99,8 +99,9 @@ fn a_turned_worm_has_the_reference_of_the_straight_one() {
     // Turned about y, it needs all three dimensions and its spine's direction; the garden's worm has a ramp and drag as well.
     for worm_of in [Worm::EXACT, Worm::GARDEN] {
         let turn = 0.7;
-        let straight = Reference::solve(&worm(worm_of.body())).unwrap();
-        let turned = Reference::solve(&worm(worm_of.body().moved(DVec3::new(2.0, 0.0, -1.0), turn))).unwrap();
+        let solve = |body| Reference::solve(&Problem { duration: 10.0, ..worm(body) }).unwrap();
+        let straight = solve(worm_of.body());
+        let turned = solve(worm_of.body().moved(DVec3::new(2.0, 0.0, -1.0), turn));
         assert!(straight.error() < 1e-12 && turned.error() < 1e-12);
         assert_eq!(straight.events().len(), turned.events().len());
         let rotation = bevy::math::DQuat::from_rotation_y(turn);
@@ -202,9 +203,10 @@ fn runs_of_a_bent_crawler_come_to_its_reference() {
     let friction = SpineFriction::new((0..4).map(ParticleId), &particles).unwrap();
     let friction = friction.with_drag(0.4).unwrap().with_grip(2.0).unwrap();
     let body = ProblemBody { muscles: Some(muscles), friction: Some(friction), ..loose(particles, springs) };
-    let problem = Problem::new("bent", vec![body], SETTING);
+    let mut problem = Problem::new("bent", vec![body], SETTING);
+    problem.duration = 8.0;
     let reference = Reference::solve(&problem).unwrap();
-    assert!(reference.error() < 1e-11 && reference.events().len() > 20, "{:e}", reference.error());
+    assert!(reference.error() < 1e-11 && reference.events().len() > 10, "{:e}", reference.error());
     let error = |dt| {
         let setting = Setting { method: Method::RungeKutta4, stick: StickRule::InStages, dt };
         measure(&problem, &reference, setting, 1).errors.unwrap().largest
@@ -246,7 +248,7 @@ fn methods_have_their_order_against_the_reference() {
         (Method::RungeKutta4, 4.0, 0.3, [0.1, 0.05, 0.025, 0.0125]),
         (Method::RungeKutta4, 4.0, 0.0, [0.1, 0.05, 0.025, 0.0125]),
     ] {
-        let problem = oscillator(2.0, damping, 0.2);
+        let problem = Problem { duration: 5.0, ..oscillator(2.0, damping, 0.2) };
         let reference = Reference::solve(&problem).unwrap();
         let errors = steps.map(|dt| {
             let setting = Setting { method, stick: StickRule::InStages, dt };
@@ -293,11 +295,11 @@ fn a_reference_is_kept_and_a_damaged_file_is_computed_again() {
     let folder = tempfile::tempdir().unwrap();
     // What does not exist yet is made.
     let cache = Cache::at(folder.path().join("a/b"));
-    let problem = worm(Worm::EXACT.body());
+    let problem = Problem { duration: 2.0, ..worm(Worm::EXACT.body()) };
     let file = cache.file(&problem).unwrap();
     let computed = cache.reference(&problem).unwrap();
     let good = fs::read(&file).unwrap();
-    assert_eq!(cache.reference(&problem).unwrap(), computed);
+    assert!(cache.reference(&problem).unwrap() == computed);
     // Whatever is wrong with the file: the same reference comes back, and the file is good again.
     let mut flipped = good.clone();
     flipped[good.len() / 2] ^= 1;
@@ -305,17 +307,17 @@ fn a_reference_is_kept_and_a_damaged_file_is_computed_again() {
     other_version[18] = b'0';
     for damaged in [flipped, other_version, good[..good.len() - 5].to_vec(), good[..20].to_vec(), Vec::new()] {
         fs::write(&file, &damaged).unwrap();
-        assert_eq!(cache.reference(&problem).unwrap(), computed);
-        assert_eq!(fs::read(&file).unwrap(), good);
+        assert!(cache.reference(&problem).unwrap() == computed);
+        assert!(fs::read(&file).unwrap() == good);
     }
     // The file is what is read: a reference with a right checksum is believed.
-    let other = worm(Worm { stiffness: 1.6, ..Worm::EXACT }.body());
+    let other = Problem { duration: 2.0, ..worm(Worm { stiffness: 1.6, ..Worm::EXACT }.body()) };
     assert_ne!(cache.file(&other), Some(file.clone()));
     fs::write(cache.file(&other).unwrap(), &good).unwrap();
-    assert_ne!(cache.reference(&other).unwrap(), computed, "a file of another problem was believed");
+    assert!(cache.reference(&other).unwrap() != computed, "a file of another problem was believed");
     // A folder that cannot be is no error.
     fs::write(folder.path().join("plain"), "no folder").unwrap();
-    assert_eq!(Cache::at(folder.path().join("plain")).reference(&problem).unwrap(), computed);
+    assert!(Cache::at(folder.path().join("plain")).reference(&problem).unwrap() == computed);
 }
 
 #[test]
@@ -401,7 +403,7 @@ fn the_cheapest_candidate_within_the_budget_is_chosen() {
 #[test]
 fn the_choice_for_the_exact_worm_keeps_its_promises() {
     let mut problem = worm(Worm::EXACT.body());
-    problem.budget = 1e-2;
+    (problem.budget, problem.duration) = (1e-2, 6.0);
     let reference = Reference::solve(&problem).unwrap();
     let mut heard = Vec::new();
     let found =
@@ -414,8 +416,8 @@ fn the_choice_for_the_exact_worm_keeps_its_promises() {
         assert!(errors.largest <= error.unwrap());
     }
     // An order of one: the step of its method that is good enough is known, and dearer.
-    assert!(found.document.error.unwrap() < 1.2e-3 && (found.document.cost - 40_000.0).abs() < 1.0, "{found:?}");
-    assert!(cost < 2000.0, "{found:?}");
+    assert!(found.document.error.unwrap() < 1.2e-3 && (found.document.cost - 12_000.0).abs() < 1.0, "{found:?}");
+    assert!(cost < 600.0, "{found:?}");
     assert_eq!(heard.last(), Some(&(Method::ALL.len(), Method::ALL.len())));
     // What nothing can keep is said.
     (problem.budget, problem.duration) = (0.0, 0.1);
@@ -427,12 +429,12 @@ fn the_choice_for_the_exact_worm_keeps_its_promises() {
 #[test]
 fn the_command_prints_its_choice_and_keeps_the_reference() {
     let folder = tempfile::tempdir().unwrap();
-    // A worm so quick that all of its ten cycles are a few thousand steps.
+    // A worm so quick that all of its ten cycles are a few hundred steps.
     let text = r#"Creature(version: 1,
       body: Raw(
         particles: [(position: (0, 0, 0), mass: 1), (position: (1, 0, 0), mass: 1)],
-        springs: [(ends: (0, 1), stiffness: 900, damping: 9, rest_length: 1,
-                   muscle: (wave: Sine, amplitude: 0.25, period: 0.1, phase: 0, ramp: 0))],
+        springs: [(ends: (0, 1), stiffness: 90000, damping: 180, rest_length: 1,
+                   muscle: (wave: Sine, amplitude: 0.25, period: 0.005, phase: 0, ramp: 0))],
         spine: [0, 1]),
       friction: (ratchet: true, drag: 1, grip: 0))"#;
     fs::write(folder.path().join("quick.creature.ron"), text).unwrap();
