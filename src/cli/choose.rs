@@ -47,7 +47,7 @@ pub(super) fn choose(arguments: &ChooseArguments) -> Result<Outcome, CliError> {
 }
 
 fn print(out: &mut impl Write, found: &Choice) -> io::Result<()> {
-    writeln!(out, "{}: an error of at most {:.4e} over ten cycles", found.scene, found.budget)?;
+    writeln!(out, "{}: an error of at most {:.4e} until t = {}", found.scene, found.budget, found.duration)?;
     let mut rows = vec![vec!["  frontier".to_owned()]];
     rows.push(["  method", "friction", "dt", "cost", "error", "of budget"].map(String::from).to_vec());
     rows.extend(found.frontier.iter().map(|candidate| row(candidate, found)));

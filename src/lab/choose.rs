@@ -10,7 +10,7 @@ use crate::mechanics::integrators::{Method, StickRule};
 
 use super::{
     LabError, Problem, Reference, Setting,
-    run::{ends_differ, errors, stepping, steps_to},
+    run::{errors, stepping, steps_to, stick_matters},
     sweep::{DOCUMENT, work},
 };
 
@@ -30,6 +30,8 @@ pub struct Candidate {
 pub struct Choice {
     /// The scene's name.
     pub scene: String,
+    /// The simulated time of a run.
+    pub duration: f64,
     /// The error that the scene can afford (lengths).
     pub budget: f64,
     /// The cheapest candidate within the budget.
@@ -97,10 +99,8 @@ pub fn choose(
     for (done, method) in methods.into_iter().enumerate() {
         progress(done, methods.len(), method.name());
         for stick in [StickRule::InStages, StickRule::EndOfStep] {
-            let steps = steps(problem, method, stick);
-            let Some(&middle) = steps.get(steps.len() / 2) else { continue };
-            let in_stages = Setting { method, stick: StickRule::InStages, dt: middle };
-            if stick == StickRule::InStages || ends_differ(problem, in_stages) {
+            if stick == StickRule::InStages || stick_matters(problem, method) {
+                let steps = steps(problem, method, stick);
                 follow(&judge, method, stick, &steps, search, &mut candidates);
             }
         }
@@ -110,6 +110,7 @@ pub fn choose(
         .ok_or_else(|| LabError::NothingFits { scene: problem.name.clone(), budget: problem.budget })?;
     Ok(Choice {
         scene: problem.name.clone(),
+        duration: problem.duration,
         budget: problem.budget,
         choice,
         own: judge.candidate(problem.setting),

@@ -5,7 +5,10 @@ use std::time::Instant;
 
 use bevy::math::DVec3;
 
-use crate::mechanics::{Advance, Model, State, Timeline, integrators::StickRule};
+use crate::mechanics::{
+    Advance, Model, State, Timeline,
+    integrators::{Method, StickRule},
+};
 
 use super::{Errors, Point, Problem, ProblemBody, Reference, Setting};
 
@@ -64,15 +67,23 @@ fn step_body<const D: usize>(body: &ProblemBody, setting: Setting, steps: u64) -
     (started.elapsed().as_secs_f64(), run.model.evaluations(0))
 }
 
-/// Whether it makes a difference to a setting when friction acts in its steps.
-pub(super) fn ends_differ(problem: &Problem, setting: Setting) -> bool {
-    /// Steps after which the difference shows.
-    const STEPS: u64 = 64;
+/// Whether it makes a difference to a method when friction acts in its steps: over a period, by the bits of all positions.
+pub(super) fn stick_matters(problem: &Problem, method: Method) -> bool {
+    /// No more steps than this are taken to see it, and no fewer than that.
+    const MOST_STEPS: f64 = 4096.0;
+    const LEAST_STEPS: f64 = 128.0;
+    if problem.bodies.iter().all(|body| body.friction.is_none()) {
+        return false;
+    }
+    let period = problem.period.unwrap_or(0.1 * problem.duration);
+    let limit = problem.stability_limit(method, StickRule::InStages);
+    let dt = (period / LEAST_STEPS).min(if limit > 0.0 { 0.25 * limit } else { f64::INFINITY });
+    let steps = (period / dt).clamp(LEAST_STEPS, MOST_STEPS) as u64;
     problem.bodies.iter().any(|body| {
         let end = |stick| {
-            let setting = Setting { stick, ..setting };
-            let on_axis = body.parts(setting.method, stick).on_axis();
-            if on_axis { end_of::<1>(body, setting, STEPS) } else { end_of::<3>(body, setting, STEPS) }
+            let setting = Setting { method, stick, dt };
+            let on_axis = body.parts(method, stick).on_axis();
+            if on_axis { end_of::<1>(body, setting, steps) } else { end_of::<3>(body, setting, steps) }
         };
         end(StickRule::InStages) != end(StickRule::EndOfStep)
     })

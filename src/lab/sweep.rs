@@ -10,7 +10,7 @@ use crate::{
 use super::{
     Cache, LabError, Point, Problem, Reference, Setting, WorkPrecision,
     machine::machine,
-    run::{ends_differ, measure, steps_to},
+    run::{measure, steps_to, stick_matters},
 };
 
 /// How a sweep is done.
@@ -112,7 +112,6 @@ pub(super) const DOCUMENT: Setting =
 
 /// All settings, method by method and from the largest step down.
 fn plan(problem: &Problem, options: &SweepOptions, progress: &mut dyn FnMut(usize, usize, &str)) -> Vec<Setting> {
-    let has_friction = problem.bodies.iter().any(|body| body.friction.is_some());
     let mut plan = Vec::new();
     for method in Method::ALL {
         for stick in [StickRule::InStages, StickRule::EndOfStep] {
@@ -121,8 +120,7 @@ fn plan(problem: &Problem, options: &SweepOptions, progress: &mut dyn FnMut(usiz
                 .filter(|own| (own.method, own.stick) == (method, stick))
                 .collect();
             let ladder = ladder(problem, method, stick, options);
-            let middle = Setting { method, stick: StickRule::InStages, dt: ladder[ladder.len() / 2] };
-            let is_other = stick == StickRule::InStages || has_friction && ends_differ(problem, middle);
+            let is_other = stick == StickRule::InStages || stick_matters(problem, method);
             let (fits, too_long): (Vec<_>, Vec<_>) =
                 ladder.into_iter().partition(|&dt| work(problem, method, dt) <= options.most_work());
             if let (true, Some(dt)) = (is_other, too_long.first()) {

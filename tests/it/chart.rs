@@ -1,24 +1,17 @@
 //! Work-precision charts: where things are drawn, what is written, and what data may be.
 
-use std::{
-    fs,
-    path::Path,
-    process::{Command, Output},
-};
-
 use ab_glyph::{Font, FontRef};
-use tempfile::TempDir;
 use wriggle::{
     lab::{
-        COLUMNS, Errors, Gallery, Point, Setting, WorkPrecision,
+        Errors, Point, Setting, WorkPrecision,
         chart::{self, Cost, Guide, Look, Panel, Picture, Place, Rect, Shape, Text},
-        csv, page,
+        page,
     },
     mechanics::integrators::{Method, StickRule},
 };
 
 /// A run of which the error follows from its step.
-fn point(method: Method, stick: StickRule, dt: f64, evaluations: u64, error: Option<f64>) -> Point {
+pub fn point(method: Method, stick: StickRule, dt: f64, evaluations: u64, error: Option<f64>) -> Point {
     let steps = (20.0 / dt).ceil() as u64;
     let seconds = 4e-8 * (steps * evaluations) as f64;
     Point {
@@ -31,7 +24,7 @@ fn point(method: Method, stick: StickRule, dt: f64, evaluations: u64, error: Opt
     }
 }
 
-fn empty() -> WorkPrecision {
+pub fn empty() -> WorkPrecision {
     WorkPrecision {
         scene: "garden".into(),
         title: "Garden".into(),
@@ -48,7 +41,7 @@ fn empty() -> WorkPrecision {
 }
 
 /// A chart as a sweep of every method would give it.
-fn full() -> WorkPrecision {
+pub fn full() -> WorkPrecision {
     let mut chart = empty();
     for (i, method) in Method::ALL.into_iter().enumerate() {
         let order = f64::from(method.about().order);
@@ -76,7 +69,7 @@ fn full() -> WorkPrecision {
 }
 
 /// One run only.
-fn one() -> WorkPrecision {
+pub fn one() -> WorkPrecision {
     let mut chart = empty();
     chart.points.push(point(Method::RungeKutta4, StickRule::InStages, 0.05, 4, Some(6e-6)));
     chart
@@ -117,7 +110,7 @@ fn absurd() -> WorkPrecision {
 }
 
 /// A chart of a method that is exactly of order 2 in both costs.
-fn of_order_two() -> WorkPrecision {
+pub fn of_order_two() -> WorkPrecision {
     let mut chart = empty();
     let errors = (0..9).map(|i| 0.5 * libm::pow(0.25, f64::from(i)));
     chart.points = errors
@@ -219,7 +212,7 @@ fn what_blew_up_stands_in_the_strip_at_the_cost_of_a_whole_run() {
             matches!(shape, Shape::Line { points, color: drawn, .. }
                 if *drawn == color && points.len() == 2 && points.iter().all(|&place| within(&panel.strip, place)))
         });
-        assert!(strokes.count() >= 2 * 2 + 1, "two strokes a cross and one for the limit");
+        assert!(strokes.count() > 4, "two strokes a cross and one for the limit");
         assert!(panel.strip.bottom < panel.frame.top);
     }
     assert_eq!(plot.series[0].good.len(), 9, "and nowhere else");
@@ -313,166 +306,4 @@ fn methods_differ_in_shape_and_line_where_colours_repeat() {
     }
     let end = Look::of(Method::ALL[0], StickRule::EndOfStep);
     assert!(end.color == looks[0].color && end.dashes != looks[0].dashes);
-}
-
-#[test]
-fn a_table_reads_back_with_every_bit() {
-    let chart = WorkPrecision { scene: "my \"best\", so far".into(), ..full() };
-    let table = csv(&chart);
-    let mut lines = table.split_terminator("\r\n");
-    assert_eq!(lines.next().unwrap(), COLUMNS.join(","));
-    let mut rows = 0;
-    for (line, point) in lines.zip(&chart.points) {
-        let line = line.strip_prefix("\"my \"\"best\"\", so far\",").unwrap();
-        let cells: Vec<_> = line.split(',').collect();
-        assert_eq!(cells.len(), COLUMNS.len() - 1);
-        let number = |i: usize| cells[i].parse::<f64>().unwrap();
-        assert_eq!((cells[0], cells[1]), (point.setting.method.name(), format!("{:?}", point.setting.stick).as_str()));
-        assert_eq!(number(2), point.setting.dt);
-        assert_eq!((cells[3].parse(), cells[4].parse()), (Ok(point.steps), Ok(point.evaluations)));
-        assert_eq!((number(5), number(6)), (point.seconds, point.median_seconds));
-        match point.errors {
-            Some(errors) => {
-                assert_eq!([7, 8, 9].map(number), [errors.largest, errors.rms, errors.distance]);
-                assert_eq!(cells[10], "false");
-            }
-            None => assert_eq!(cells[7..], ["", "", "", "true"]),
-        }
-        rows += 1;
-    }
-    assert_eq!(rows, chart.points.len());
-}
-
-#[test]
-fn the_page_escapes_what_it_shows_and_needs_nothing_from_elsewhere() {
-    let bad = "<script>alert('1')</script> & \"more\"";
-    let chart = WorkPrecision {
-        scene: "a b\"c".into(),
-        title: bad.into(),
-        reference: bad.into(),
-        machine: bad.into(),
-        ..full()
-    };
-    let html = page(&[chart, empty()]).unwrap();
-    assert!(!html.contains("<script") && html.contains("&lt;script&gt;"));
-    assert!(html.contains("href=\"./a%20b%22c.csv\""));
-    for (at, _) in html.match_indices("http") {
-        assert!(html[at..].starts_with("http://www.w3.org/2000/svg\""), "{}", &html[at..at + 60]);
-    }
-    assert!(!html.contains("src=") && !html.contains("@import") && !html.contains("url("));
-    assert_eq!(html.matches("<svg").count(), 2);
-    assert_eq!(
-        html.matches("blew up</td>").count(),
-        full().points.iter().filter(|point| point.errors.is_none()).count()
-    );
-    assert!(page(&[]).unwrap().contains("No scene has been measured yet"));
-}
-
-fn files(folder: &Path) -> Vec<String> {
-    let mut names: Vec<_> =
-        fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
-    names.sort();
-    names
-}
-
-#[test]
-fn a_gallery_knows_what_it_has_measured() {
-    let folder = TempDir::new().unwrap();
-    let gallery = Gallery::open(folder.path().join("new/charts")).unwrap();
-    let chart = one();
-    assert!(gallery.finished("garden", "a").is_none());
-    gallery.partial("garden", "a").unwrap().push(chart.points[0]).unwrap();
-    gallery.keep("a", &chart).unwrap();
-    let kept = gallery.finished("garden", "a").unwrap();
-    assert_eq!(kept.limits, chart.limits, "infinite limits survive");
-    assert_eq!((kept.points.len(), kept.points[0].setting), (1, chart.points[0].setting));
-    assert!(gallery.is_drawn("garden") && !gallery.is_drawn("snake"));
-    assert!(gallery.finished("garden", "b").is_none() && gallery.finished("snake", "a").is_none());
-    let page = gallery.write_page().unwrap();
-    assert!(fs::read_to_string(&page).unwrap().contains("<h2>Garden</h2>"));
-    // What is whole needs no parts.
-    let names = ["garden.csv", "garden.json", "garden.png", "garden.svg", "index.html"];
-    assert_eq!(files(page.parent().unwrap()), names);
-    let png = fs::read(gallery.file("garden", "png")).unwrap();
-    let png = image::load_from_memory(&png).unwrap();
-    assert_eq!((png.width(), png.height()), (1600, 900));
-    fs::write(gallery.file("garden", "json"), &fs::read(gallery.file("garden", "json")).unwrap()[..200]).unwrap();
-    assert!(gallery.finished("garden", "a").is_none(), "half a file is no chart");
-    assert!(fs::read_to_string(gallery.write_page().unwrap()).unwrap().contains("No scene"));
-}
-
-#[test]
-fn a_gallery_says_which_folder_is_wrong() {
-    let folder = TempDir::new().unwrap();
-    let file = folder.path().join("file");
-    fs::write(&file, "").unwrap();
-    for bad in [file.clone(), file.join("below")] {
-        let error = Gallery::open(&bad).unwrap_err().to_string();
-        assert!(error.starts_with(&bad.display().to_string()) && error.contains("give a folder"), "{error}");
-    }
-}
-
-#[test]
-fn an_interrupted_sweep_goes_on_where_it_stopped() {
-    let folder = TempDir::new().unwrap();
-    let gallery = Gallery::open(folder.path()).unwrap();
-    let points = of_order_two().points;
-    let mut partial = gallery.partial("garden", "a").unwrap();
-    assert!(partial.is_empty() && partial.known(points[0].setting).is_none());
-    points[..2].iter().for_each(|&point| partial.push(point).unwrap());
-    // Cut off in the middle of a line.
-    let file = gallery.file("garden", "part.jsonl");
-    let text = fs::read_to_string(&file).unwrap();
-    fs::write(&file, format!("{text}{{\"setting\":{{\"meth")).unwrap();
-    let mut partial = gallery.partial("garden", "a").unwrap();
-    assert_eq!((partial.len(), partial.known(points[1].setting)), (2, Some(points[1])));
-    assert_eq!(partial.known(points[2].setting), None);
-    partial.push(points[2]).unwrap();
-    assert_eq!(gallery.partial("garden", "a").unwrap().len(), 3, "what comes after the cut is whole");
-    assert!(gallery.partial("garden", "b").unwrap().is_empty(), "another problem begins anew");
-}
-
-fn run(folder: &Path, arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_wriggle"));
-    command.arg("chart").args(arguments).current_dir(folder).env("XDG_CACHE_HOME", folder.join("cache"));
-    command.output().unwrap()
-}
-
-#[test]
-fn the_command_measures_a_scene_once() {
-    let folder = TempDir::new().unwrap();
-    let creature = "Creature(version: 1, body: Raw(particles: [(position: (0, 0, 0), mass: 1), (position: (1.2, 0, 0), \
-                    mass: 1)], springs: [(ends: (0, 1), stiffness: 0.1, damping: 0.1, rest_length: 1)]))";
-    fs::write(folder.path().join("pair.creature.ron"), creature).unwrap();
-    let arguments = ["pair.creature.ron", "--out", "charts", "--quick"];
-    let output = run(folder.path(), &arguments);
-    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
-    assert!(String::from_utf8_lossy(&output.stdout).contains("runs, measured;"));
-    assert!(output.stderr.is_empty(), "no bar in a pipe: {}", String::from_utf8_lossy(&output.stderr));
-    let charts = folder.path().join("charts");
-    assert_eq!(files(&charts), ["index.html", "pair.csv", "pair.json", "pair.png", "pair.svg"]);
-    let table = fs::read_to_string(charts.join("pair.csv")).unwrap();
-    for method in Method::ALL {
-        assert!(table.contains(&format!("pair,{},", method.name())), "no run of {}", method.name());
-    }
-    let output = run(folder.path(), &arguments);
-    assert!(String::from_utf8_lossy(&output.stdout).contains("runs, measured before;"));
-    assert_eq!(fs::read_to_string(charts.join("pair.csv")).unwrap(), table);
-}
-
-#[test]
-fn the_command_says_what_is_wrong_before_it_measures() {
-    let folder = TempDir::new().unwrap();
-    fs::write(folder.path().join("taken"), "").unwrap();
-    let cases: [(&[&str], &str); 4] = [
-        (&["gardn", "--out", "charts"], "gardn"),
-        (&["garden", "--out", "taken"], "taken: is no folder; give a folder that can be written to"),
-        (&["garden", "--out", "taken/below"], "taken/below: cannot be written to"),
-        (&["garden", "garden", "--out", "charts"], "give `garden` once"),
-    ];
-    for (arguments, problem) in cases {
-        let output = run(folder.path(), arguments);
-        let said = String::from_utf8_lossy(&output.stderr);
-        assert!(output.status.code() == Some(2) && said.contains(problem), "{arguments:?}: {said}");
-    }
 }

@@ -301,7 +301,7 @@ fn a_reference_is_kept_and_a_damaged_file_is_computed_again() {
     let file = cache.file(&problem).unwrap();
     let computed = cache.reference(&problem).unwrap();
     let good = fs::read(&file).unwrap();
-    assert_eq!(cache.reference(&problem).unwrap(), computed);
+    assert!(cache.reference(&problem).unwrap() == computed);
     // Whatever is wrong with the file: the same reference comes back, and the file is good again.
     let mut flipped = good.clone();
     flipped[good.len() / 2] ^= 1;
@@ -309,17 +309,17 @@ fn a_reference_is_kept_and_a_damaged_file_is_computed_again() {
     other_version[18] = b'0';
     for damaged in [flipped, other_version, good[..good.len() - 5].to_vec(), good[..20].to_vec(), Vec::new()] {
         fs::write(&file, &damaged).unwrap();
-        assert_eq!(cache.reference(&problem).unwrap(), computed);
-        assert_eq!(fs::read(&file).unwrap(), good);
+        assert!(cache.reference(&problem).unwrap() == computed);
+        assert!(fs::read(&file).unwrap() == good);
     }
     // The file is what is read: a reference with a right checksum is believed.
     let other = Problem { duration: 2.0, ..worm(Worm { stiffness: 1.6, ..Worm::EXACT }.body()) };
     assert_ne!(cache.file(&other), Some(file.clone()));
     fs::write(cache.file(&other).unwrap(), &good).unwrap();
-    assert_ne!(cache.reference(&other).unwrap(), computed, "a file of another problem was believed");
+    assert!(cache.reference(&other).unwrap() != computed, "a file of another problem was believed");
     // A folder that cannot be is no error.
     fs::write(folder.path().join("plain"), "no folder").unwrap();
-    assert_eq!(Cache::at(folder.path().join("plain")).reference(&problem).unwrap(), computed);
+    assert!(Cache::at(folder.path().join("plain")).reference(&problem).unwrap() == computed);
 }
 
 #[test]

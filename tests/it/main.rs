@@ -11,6 +11,7 @@ mod exact_worm;
 mod failures;
 mod files;
 mod friction;
+mod gallery;
 mod garden_worm;
 mod lab;
 mod laws;

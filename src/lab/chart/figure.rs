@@ -1,13 +1,15 @@
 //! Draws the panels of a chart.
 
 use super::{
-    labels::{Placer, around},
+    labels::Placer,
     look::{regular, star},
     plot::{Panel, Plot},
-    scale::{Tick, short},
+    scale::Tick,
     series::{Cost, Series, error},
-    shapes::{Anchor, Color, Picture, Place, Rect, Text},
+    shapes::{Color, Picture, Place, Rect},
+    text::{Anchor, Text},
     tracks::Track,
+    words,
 };
 use crate::lab::WorkPrecision;
 
@@ -18,13 +20,13 @@ pub(super) const STAR: f64 = 13.0;
 /// The radius of the circle of the document's setting.
 pub(super) const CIRCLE: f64 = 12.0;
 /// The em of what is written at marks and lines.
-const SMALL: f64 = 12.5;
+pub(super) const SMALL: f64 = 12.5;
 const TICK_SIZE: f64 = 14.0;
 
 pub(super) const BLACK: Color = [0; 3];
 pub(super) const GREY: Color = [0x66; 3];
 pub(super) const BUDGET: Color = [0xdf, 0xef, 0xe6];
-const BUDGET_EDGE: Color = [0x3d, 0x7a, 0x5c];
+pub(super) const BUDGET_EDGE: Color = [0x3d, 0x7a, 0x5c];
 const GRID: Color = [0xdc; 3];
 const FAINT_GRID: Color = [0xf0; 3];
 pub(super) const GUIDE: Color = [0x9a; 3];
@@ -33,7 +35,7 @@ pub(super) const STAR_FILL: Color = [0xf0, 0xe4, 0x42];
 /// Draws a panel; the first one has the axis of errors.
 pub(super) fn draw(picture: &mut Picture, chart: &WorkPrecision, plot: &Plot, panel: &Panel, first: bool) {
     let mut placer = Placer::new(panel.frame);
-    let levels = levels(chart, panel);
+    let levels = words::levels(chart, panel);
     if let Some(budget) = levels.iter().find(|level| level.band) {
         picture.area(Rect { top: budget.y, ..panel.frame }.corners(), BUDGET, 1.0);
     }
@@ -66,35 +68,13 @@ pub(super) fn draw(picture: &mut Picture, chart: &WorkPrecision, plot: &Plot, pa
         }
         places.iter().for_each(|&place| series.look().mark(picture, place, MARKER));
     }
-    words(picture, panel, &mut placer, &levels);
-    steps(picture, plot, panel, &mut placer);
+    words::meanings(picture, panel, &mut placer, &levels);
+    words::steps(picture, plot, panel, &mut placer);
 }
 
-fn places(panel: &Panel, series: &Series) -> Vec<Place> {
+pub(super) fn places(panel: &Panel, series: &Series) -> Vec<Place> {
     let runs = series.good.iter().filter_map(|point| Some((panel.cost.of(point), error(point)?)));
     runs.map(|(cost, error)| panel.place(cost, error)).collect()
-}
-
-/// An error that means something.
-struct Level {
-    y: f64,
-    text: String,
-    color: Color,
-    /// Whether all below it is shaded.
-    band: bool,
-}
-
-/// What the scene can afford, and how far the reference can be trusted.
-fn levels(chart: &WorkPrecision, panel: &Panel) -> Vec<Level> {
-    let budget = (chart.budget, "good enough: error below", BUDGET_EDGE, true);
-    let reference = (chart.reference_error, "the reference itself is sure to", GREY, false);
-    let shown = [budget, reference].into_iter().filter(|(error, ..)| panel.y.shows(*error));
-    shown
-        .map(|(error, text, color, band)| {
-            let text = format!("{text} {}", short(error));
-            Level { y: panel.y.place(error), text, color, band }
-        })
-        .collect()
 }
 
 fn grid(picture: &mut Picture, plot: &Plot, panel: &Panel, first: bool) {
@@ -218,63 +198,4 @@ pub(super) fn draw_circle(picture: &mut Picture, (x, y): Place, radius: f64) {
     let mut ring: Vec<_> = regular(48, 0.0, radius).into_iter().map(|(dx, dy)| (x + dx, y + dy)).collect();
     ring.push(ring[0]);
     picture.line(ring, BLACK, 2.0);
-}
-
-/// What lines and bands mean, written at them.
-fn words(picture: &mut Picture, panel: &Panel, placer: &mut Placer, levels: &[Level]) {
-    let frame = panel.frame;
-    for level in levels {
-        let places = [(frame.right - 8.0, Anchor::End), (frame.left + 8.0, Anchor::Start)];
-        let candidates = places.into_iter().flat_map(|(x, anchor)| {
-            let text = |y| Text::new(level.text.clone(), (x, y), SMALL).anchored(anchor).colored(level.color);
-            [text(level.y + 17.0), text(level.y - 6.0)]
-        });
-        write(picture, placer.place(candidates, true));
-    }
-    if let Some(x) = panel.real_time {
-        let candidates = [(x - 7.0, Anchor::End), (x + 7.0, Anchor::Start)].into_iter().flat_map(|(x, anchor)| {
-            (1..20).map(move |i| Text::new("real time", (x, frame.top + 18.0 * f64::from(i)), SMALL).anchored(anchor))
-        });
-        write(picture, placer.place(candidates, true));
-    }
-    for guide in &panel.guides {
-        let along = |part: f64| {
-            let (from, to) = (guide.from, guide.to);
-            (from.0 + part * (to.0 - from.0), from.1 + part * (to.1 - from.1))
-        };
-        let parts = (1..20).map(|i| 1.0 - 0.04 * f64::from(i));
-        let text = |part| {
-            let (x, y) = along(part);
-            let text = Text::new(format!("order {}", guide.order), (x + 6.0, y - 4.0), SMALL).colored(GREY);
-            [text.clone(), Text { at: (x - 6.0, y + 13.0), ..text }.anchored(Anchor::End)]
-        };
-        write(picture, placer.place(parts.flat_map(text), false));
-    }
-}
-
-/// Writes a text that has found room, on a ground that lets what lies below shine through.
-fn write(picture: &mut Picture, text: Option<Text>) {
-    if let Some(text) = text {
-        picture.area(text.bounds().corners(), [0xff; 3], 0.6);
-        picture.text(text);
-    }
-}
-
-/// Writes dt at the first and the last point of each series, then at as many between as have room.
-fn steps(picture: &mut Picture, plot: &Plot, panel: &Panel, placer: &mut Placer) {
-    let label = |series: &Series, i: usize| {
-        Text::new(short(series.good[i].setting.dt), (0.0, 0.0), SMALL).colored(series.look().ink())
-    };
-    let all: Vec<_> = plot.series.iter().map(|series| (series, places(panel, series))).collect();
-    let mut label_at = |series: &Series, places: &[Place], i: usize, over_lines| {
-        let candidates = around(&label(series, i), places[i], MARKER);
-        write(picture, placer.place(candidates, over_lines));
-    };
-    let ends = |places: &[Place]| [0, places.len() - 1].into_iter().take(places.len().min(2)).collect::<Vec<_>>();
-    for (series, places) in all.iter().filter(|(_, places)| !places.is_empty()) {
-        ends(places).into_iter().for_each(|i| label_at(series, places, i, true));
-    }
-    for (series, places) in all.iter().filter(|(_, places)| places.len() > 2) {
-        (1..places.len() - 1).for_each(|i| label_at(series, places, i, false));
-    }
 }

@@ -1,6 +1,9 @@
 //! Finds room for words between marks and lines.
 
-use super::shapes::{Place, Rect, Text};
+use super::{
+    shapes::{Place, Rect},
+    text::Text,
+};
 
 /// What is taken in a panel.
 #[derive(Clone, Debug)]
@@ -51,7 +54,7 @@ impl Placer {
 
 /// Places around a mark for a text, from the nearest outwards.
 pub(super) fn around(text: &Text, (x, y): Place, radius: f64) -> Vec<Text> {
-    use super::shapes::Anchor::{End, Middle, Start};
+    use super::text::Anchor::{End, Middle, Start};
     let up = 0.27 * text.size;
     let mut places = Vec::new();
     for distance in [radius + 4.0, radius + 11.0] {

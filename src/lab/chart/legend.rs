@@ -4,7 +4,8 @@ use super::{
     figure::{self, MARKER},
     plot::{Plot, Room},
     scale::short,
-    shapes::{Anchor, Picture, Place, Rect, Text, wrap},
+    shapes::{Picture, Place, Rect},
+    text::{Anchor, Text, wrap},
 };
 use crate::{lab::WorkPrecision, mechanics::integrators::Method, scenes::DOCUMENT_DT};
 

@@ -11,7 +11,9 @@ mod render;
 mod scale;
 mod series;
 mod shapes;
+mod text;
 mod tracks;
+mod words;
 
 use super::WorkPrecision;
 
@@ -20,7 +22,8 @@ pub use plot::{Guide, Panel, Plot, Room};
 pub use render::ChartError;
 pub use scale::{LogScale, Tick, short};
 pub use series::{Cost, Series, error};
-pub use shapes::{Anchor, Color, Picture, Place, Rect, Shape, Text};
+pub use shapes::{Color, Picture, Place, Rect, Shape};
+pub use text::{Anchor, Text};
 pub use tracks::Track;
 
 /// Lays a chart out as [`picture`] draws it.

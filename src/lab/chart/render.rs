@@ -16,7 +16,10 @@ use plotters::{
 };
 use thiserror::Error;
 
-use super::shapes::{Anchor, LINE_HEIGHT, Picture, Place, Shape, Text};
+use super::{
+    shapes::{Picture, Place, Shape},
+    text::{Anchor, LINE_HEIGHT, Text},
+};
 
 /// Why a chart could not be drawn.
 #[derive(Debug, Error)]

@@ -3,7 +3,7 @@
 use super::{
     scale::LogScale,
     series::{Cost, Series},
-    shapes::text_width,
+    text::text_width,
 };
 
 /// The crosses and the limit of one series.

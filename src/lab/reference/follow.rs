@@ -63,6 +63,8 @@ pub(super) fn follow<const D: usize>(
     let end = times.last().copied().unwrap_or(0.0);
     let kinks = kinks(body.muscles.as_ref(), end);
     let y = start::<D>(body);
+    // Without events nothing has to be looked for.
+    let grain = if flow.has_events() { grain } else { Grain { chunk: f64::INFINITY, ..grain } };
     let mut follower = Follower {
         flow: &flow,
         scheme,
@@ -77,7 +79,7 @@ pub(super) fn follow<const D: usize>(
     };
     let mut track = Track::default();
     let mut next = 0;
-    follower.modes = flow.settle(follower.window, &mut follower.y, grain.push, 0.01 * grain.chunk);
+    follower.modes = flow.settle(follower.window, &mut follower.y, grain.push, 1e-4 * end);
     follower.look();
     for &time in times {
         while next < kinks.len() && kinks[next] < time {

@@ -1,7 +1,8 @@
 //! Reference solutions: the motion itself, as far as rounding errors let it be known.
 //!
-//! Each body is followed twice, piece by piece between events that are located ([`follow`]): by DOP853 at a tolerance of 1e-12, which is the reference, and
-//! by collocation in small fixed steps, which confirms it. Both see the same forces, and nothing else is shared.
+//! Each body is followed twice, piece by piece between events that are located: by DOP853 at a tolerance of 1e-12, which is the reference, and by
+//! collocation in small fixed steps, which confirms it and looks for events at other times. They share the forces and the rules of
+//! friction, which known solutions confirm in the tests.
 
 mod events;
 mod flow;
