@@ -338,7 +338,7 @@ fn a_velocity_projection_takes_its_energy_with_a_unit_direction_and_adds_it_with
     assert!((lost - 0.5 * 0.16).abs() < 1e-9, "{lost}");
 }
 
-/// How far the exact worm's masses are from their start after 20 units by half-millisecond steps in f32, from an origin so far away.
+/// How far the exact worm's masses are from their start after 20 units by steps of a millisecond in f32, from an origin so far away.
 fn worm_in_f32(origin: f32) -> [f32; 3] {
     const DT: f32 = 0.001;
     let start = [origin, origin + 1.0, origin + 2.0];

@@ -82,7 +82,7 @@ pub fn limits(scene: &LoadedScene) -> Result<Vec<Limits>, FileError> {
 
 /// Whether two limits differ by more than is expected of them.
 fn is_apart(a: f64, b: f64) -> bool {
-    a != b && !((b / a - 1.0).abs() <= NEAR)
+    a != b && (b - a).abs().partial_cmp(&(NEAR * a)).is_none_or(core::cmp::Ordering::is_gt)
 }
 
 fn name<S: Serializer>(method: &Method, serializer: S) -> Result<S::Ok, S::Error> {

@@ -67,23 +67,23 @@ pub fn scene_limit(body: &BodyParts<'_>, linearised: f64) -> Option<f64> {
 /// Why a body explodes at `explodes` where its linearised step grows from `linearised` on.
 pub(super) fn reason(body: &BodyParts<'_>, linearised: f64, explodes: f64) -> &'static str {
     let slippery = BodyParts { friction: None, coulomb: None, ground: None, gravity: None, ..*body };
-    let has_friction = body.friction.is_some() || body.coulomb.is_some() || body.ground.is_some();
-    let without = if has_friction { scene_limit(&slippery, linearised) } else { None };
     if linearised == 0.0 {
-        "what is not damped grows too slowly to explode in fifty cycles"
-    } else if explodes < linearised {
-        match without {
+        return "what is not damped grows too slowly to explode in fifty cycles";
+    }
+    if explodes < linearised {
+        return match scene_limit(&slippery, linearised) {
             Some(without) if !is_apart(linearised, without) => "friction lets masses go with a jerk",
             _ => "muscles drive it into poses and speeds that a small disturbance does not reach",
-        }
-    } else if without.is_some_and(|without| without <= linearised || !is_apart(linearised, without)) {
+        };
+    }
+    let between = if explodes.is_finite() { (linearised * explodes).sqrt() } else { 1.5 * linearised };
+    let (with, without) = (run(body, between), run(&slippery, between));
+    if without.exploded {
         "friction holds masses, and what is held does not oscillate"
+    } else if with.flipped || without.flipped {
+        "a spring through zero length flips: bounded rattling"
     } else {
-        let between = if explodes.is_finite() { (linearised * explodes).sqrt() } else { 1.5 * linearised };
-        match run(body, between).flipped || run(&slippery, between).flipped {
-            true => "a spring through zero length flips: bounded rattling",
-            false => "the disturbance grows too slowly to explode in fifty cycles",
-        }
+        "the disturbance grows too slowly to explode in fifty cycles"
     }
 }
 
