@@ -97,6 +97,8 @@ impl ProblemBody {
             hash.numbers(&[friction.drag(), friction.grip()]);
         }
         hash.number(self.gravity.map_or(0.0, Gravity::acceleration));
+        // No reference knows Coulomb friction; it must not be taken for a body without it.
+        hash.whole(u64::from(self.coulomb.is_some()));
         hash.whole(self.ground.map_or(0, |ground| 1 + ground as u64));
         hash.number(self.mass_damping.map_or(0.0, |damping| damping.rate_at(1.0)));
     }

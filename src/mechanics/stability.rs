@@ -56,7 +56,8 @@ pub fn stability_bound(body: &BodyParts<'_>, stretched: bool) -> StabilityBound 
     StabilityBound {
         rates,
         damping: damping_law(body),
-        least_ratio: least_ratio(body),
+        // Across a stretched spring there is stiffness and no damping.
+        least_ratio: if stretched && !body.on_axis() { 0.0 } else { least_ratio(body) },
         mass_damping: match body.mass_damping {
             Some(MassDamping::Rate(rate)) => rate,
             _ => 0.0,

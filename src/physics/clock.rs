@@ -28,13 +28,15 @@ pub struct Clock {
     pace: Pace,
     step: u64,
     carry: f64,
+    /// How many steps the last tick took that took any.
+    last_steps: u64,
 }
 
 /// The garden worm's document steps by half a millisecond.
 impl Default for Clock {
     fn default() -> Self {
         let timeline = Timeline { dt: 0.0005, base_step: 0, base_time: 0.0 };
-        Self { timeline, pace: Pace::TimeScale(1.0), step: 0, carry: 0.0 }
+        Self { timeline, pace: Pace::TimeScale(1.0), step: 0, carry: 0.0, last_steps: 0 }
     }
 }
 
@@ -117,28 +119,49 @@ impl Clock {
     /// Back to time 0, with the same dt and pace.
     pub fn rewind(&mut self) {
         self.timeline = Timeline { base_step: 0, base_time: 0.0, ..self.timeline };
-        (self.step, self.carry) = (0, 0.0);
+        (self.step, self.carry, self.last_steps) = (0, 0.0, 0);
     }
 
-    /// Takes the whole steps of a tick that lasts `seconds` of real time, and says how many they are.
-    pub(super) fn take_steps(&mut self, seconds: f64) -> u64 {
+    /// The whole steps of a tick that lasts `seconds` of real time, and what is carried on to the next.
+    fn due(&self, seconds: f64) -> (u64, f64) {
         match self.pace {
-            Pace::Steps(steps) => steps,
+            Pace::Steps(steps) => (steps, 0.0),
             Pace::TimeScale(scale) => {
                 let due = self.carry + seconds * scale / self.timeline.dt;
                 if due >= Self::MOST_STEPS_A_TICK as f64 {
                     // What cannot be caught up with is not carried on.
-                    self.carry = 0.0;
-                    return Self::MOST_STEPS_A_TICK;
+                    return (Self::MOST_STEPS_A_TICK, 0.0);
                 }
-                self.carry = due.fract();
-                due as u64
+                (due as u64, due.fract())
             }
         }
+    }
+
+    /// Whether a tick that lasts `seconds` takes any step.
+    pub(super) fn will_step(&self, seconds: f64) -> bool {
+        self.due(seconds).0 > 0
+    }
+
+    /// Takes the whole steps of a tick that lasts `seconds` of real time, and says how many they are.
+    pub(super) fn take_steps(&mut self, seconds: f64) -> u64 {
+        let (steps, carry) = self.due(seconds);
+        self.carry = carry;
+        steps
     }
 
     /// Moves on by `steps`, once the bodies have taken them.
     pub(super) fn advance(&mut self, steps: u64) {
         self.step += steps;
+        self.last_steps = steps;
+    }
+
+    /// How far a frame is on the way from where the last tick that took steps began to where it ended. `overstep` is the part of the next tick that has
+    /// passed, of `seconds` each. What is shown is late by a tick, or by a step where steps are longer: then it moves on through the
+    /// ticks that take none.
+    pub(super) fn shown_fraction(&self, overstep: f64, seconds: f64) -> f64 {
+        let Pace::TimeScale(scale) = self.pace else { return overstep };
+        let steps_a_tick = seconds * scale / self.timeline.dt;
+        let passed = self.last_steps as f64 + self.carry + overstep * steps_a_tick - steps_a_tick.max(1.0);
+        if self.last_steps == 0 { 1.0 } else { (passed / self.last_steps as f64).clamp(0.0, 1.0) }
     }
 }

@@ -115,8 +115,10 @@ impl Plugin for PhysicsPlugin {
         });
 
         let ticks_are_fixed = self.schedule == FixedUpdate.intern();
-        let fraction = move |fixed: Option<Res<Time<Fixed>>>| match fixed {
-            Some(time) if ticks_are_fixed => time.overstep_fraction_f64(),
+        let fraction = move |fixed: Option<Res<Time<Fixed>>>, clock: Res<Clock>| match fixed {
+            Some(time) if ticks_are_fixed => {
+                clock.shown_fraction(time.overstep_fraction_f64(), time.timestep().as_secs_f64())
+            }
             _ => 1.0,
         };
         let sync = (fraction.pipe(sync::show), sync::follow).chain().in_set(PhysicsSystems::Sync);

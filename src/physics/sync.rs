@@ -5,13 +5,15 @@ use bevy::{
     math::{DVec3, Vec3},
     prelude::ReflectComponent,
     reflect::Reflect,
+    time::Time,
     transform::components::Transform,
 };
 
+use super::Clock;
 use crate::body::{ParticleId, Particles};
 
-/// The positions at which the particles of a body are shown in this frame: between the last tick and the one before, by how much of
-/// the next tick has passed. Written once a frame in [`PhysicsSystems::Sync`](super::PhysicsSystems::Sync), never read by
+/// The positions at which the particles of a body are shown in this frame: on the way of the last tick that took steps, by how
+/// much time has passed since. Written once a frame in [`PhysicsSystems::Sync`](super::PhysicsSystems::Sync), never read by
 /// the physics.
 #[derive(Clone, Component, Debug, Default, Reflect)]
 #[reflect(Component)]
@@ -26,7 +28,7 @@ impl Shown {
     }
 }
 
-/// Where the particles were one tick ago.
+/// Where the particles were before the last tick that took steps.
 #[derive(Clone, Component, Debug, Default)]
 pub struct Previous {
     pub(super) position: [Vec<f64>; 3],
@@ -62,8 +64,11 @@ pub struct FollowParticle {
     pub particle: ParticleId,
 }
 
-/// Remembers where the particles are, before a tick moves them.
-pub(super) fn remember(mut bodies: Query<(&Particles, &mut Previous)>) {
+/// Remembers where the particles are, before a tick moves them. A tick without steps leaves what is remembered.
+pub(super) fn remember(time: Res<Time>, clock: Res<Clock>, mut bodies: Query<(&Particles, &mut Previous)>) {
+    if !clock.will_step(time.delta_secs_f64()) {
+        return;
+    }
     for (particles, mut previous) in &mut bodies {
         previous.position.clone_from(particles.position_columns());
     }

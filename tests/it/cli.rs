@@ -33,13 +33,13 @@ fn json(arguments: &[&str]) -> Value {
 
 #[test]
 fn json_has_every_field() {
-    let result = json(&["run", "garden", "--for", "6", "--threads", "2"]);
+    let result = json(&["run", "document", "--for", "6", "--threads", "2"]);
     let keys = |value: &Value| value.as_object().unwrap().keys().cloned().collect::<std::collections::BTreeSet<_>>();
     let fields = "scene method dt time steps wall_seconds force_evaluations spring_updates hash threads bodies";
     assert_eq!(keys(&result), fields.split(' ').map(String::from).collect());
     let fields = "name particles springs start center distance status";
     assert_eq!(keys(&result["bodies"][0]), fields.split(' ').map(String::from).collect());
-    assert_eq!((result["scene"].as_str(), result["method"].as_str()), (Some("garden"), Some("SemiImplicitEuler")));
+    assert_eq!((result["scene"].as_str(), result["method"].as_str()), (Some("document"), Some("SemiImplicitEuler")));
     assert_eq!((result["dt"].as_f64(), result["time"].as_f64()), (Some(0.0005), Some(6.0)));
     assert_eq!((result["steps"].as_u64(), result["force_evaluations"].as_u64()), (Some(12_000), Some(12_000)));
     assert_eq!((result["spring_updates"].as_u64(), result["threads"].as_u64()), (Some(24_000), Some(2)));
@@ -54,14 +54,14 @@ fn json_has_every_field() {
 
 #[test]
 fn flags_change_the_run() {
-    let plain = json(&["run", "garden", "--for", "3"]);
-    let set = json(&["run", "garden", "--for", "3", "--set", "worm.springs.stiffness=2", "--set", "worm.gravity=0"]);
+    let plain = json(&["run", "document", "--for", "3"]);
+    let set = json(&["run", "document", "--for", "3", "--set", "worm.springs.stiffness=2", "--set", "worm.gravity=0"]);
     assert_ne!(plain["hash"], set["hash"]);
-    let other = json(&["run", "garden", "--for", "3", "--dt", "0.01", "--method", "RungeKutta4"]);
+    let other = json(&["run", "document", "--for", "3", "--dt", "0.01", "--method", "RungeKutta4"]);
     assert_eq!((other["method"].as_str(), other["steps"].as_u64()), (Some("RungeKutta4"), Some(300)));
     assert_eq!(other["force_evaluations"].as_u64(), Some(1200));
-    assert_eq!(json(&["run", "garden", "--dt", "0.05"])["time"].as_f64(), Some(60.0));
-    assert_eq!(json(&["run", "garden", "--for", "0"])["steps"].as_u64(), Some(0));
+    assert_eq!(json(&["run", "document", "--dt", "0.05"])["time"].as_f64(), Some(60.0));
+    assert_eq!(json(&["run", "document", "--for", "0"])["steps"].as_u64(), Some(0));
 }
 
 #[test]
@@ -96,7 +96,7 @@ fn a_recording_has_every_bit_and_ends_with_the_hashed_state() {
 
 #[test]
 fn a_recording_goes_to_standard_output_and_takes_every_step() {
-    let output = wriggle(&["run", "garden", "--for", "0.005", "--record", "-"]);
+    let output = wriggle(&["run", "document", "--for", "0.005", "--record", "-"]);
     assert_eq!(stdout(&output).lines().count(), 1 + 11 * 3);
     assert!(stderr(&output).contains("garden: 10 steps"), "{}", stderr(&output));
 }
@@ -104,22 +104,22 @@ fn a_recording_goes_to_standard_output_and_takes_every_step() {
 #[test]
 fn bad_input_exits_with_2_and_says_what_is_right() {
     for (arguments, words) in [
-        (&["run", "garden", "--for", "1.0003"][..], &["--for 1.0003", "1 and 1.0005"][..]),
-        (&["run", "garden", "--for", "-1"], &["-1"]),
-        (&["run", "garden", "--for=-1"], &["--for", "0 or more"]),
-        (&["run", "garden", "--for", "1e300"], &["--for", "give a shorter time"]),
-        (&["run", "garden", "--dt", "0"], &["--dt", "above 0"]),
-        (&["run", "garden", "--dt", "fast"], &["--dt", "above 0"]),
-        (&["run", "garden", "--method", "Newmark"], &["Newmark", "SemiImplicitEuler", "RungeKutta4"]),
-        (&["run", "garden", "--set", "worm.springs.stiffness"], &["PATH=VALUE"]),
-        (&["run", "garden", "--set", "worm.springs.stiffness=x"], &["`x` is no number"]),
-        (&["run", "garden", "--set", "worm.springs.stiffness=-1"], &["worm.springs.stiffness: -1", "0 or more"]),
-        (&["run", "garden", "--set", "worm.springs.stifness=1"], &["did you mean worm.springs.stiffness"]),
-        (&["run", "garden", "--every", "1"], &["--record"]),
-        (&["run", "garden", "--record", "-", "--every", "0.0007"], &["--every 0.0007", "0.0005 and 0.001"]),
-        (&["run", "garden", "--record", "-", "--json"], &["--json and --record -"]),
-        (&["run", "garden", "--for", "1", "--record", "/nowhere/r.csv"], &["/nowhere/r.csv"]),
-        (&["run", "garden", "--threads", "0"], &["--threads"]),
+        (&["run", "document", "--for", "1.0003"][..], &["--for 1.0003", "1 and 1.0005"][..]),
+        (&["run", "document", "--for", "-1"], &["-1"]),
+        (&["run", "document", "--for=-1"], &["--for", "0 or more"]),
+        (&["run", "document", "--for", "1e300"], &["--for", "give a shorter time"]),
+        (&["run", "document", "--dt", "0"], &["--dt", "above 0"]),
+        (&["run", "document", "--dt", "fast"], &["--dt", "above 0"]),
+        (&["run", "document", "--method", "Newmark"], &["Newmark", "SemiImplicitEuler", "RungeKutta4"]),
+        (&["run", "document", "--set", "worm.springs.stiffness"], &["PATH=VALUE"]),
+        (&["run", "document", "--set", "worm.springs.stiffness=x"], &["`x` is no number"]),
+        (&["run", "document", "--set", "worm.springs.stiffness=-1"], &["worm.springs.stiffness: -1", "0 or more"]),
+        (&["run", "document", "--set", "worm.springs.stifness=1"], &["did you mean worm.springs.stiffness"]),
+        (&["run", "document", "--every", "1"], &["--record"]),
+        (&["run", "document", "--record", "-", "--every", "0.0007"], &["--every 0.0007", "0.0005 and 0.001"]),
+        (&["run", "document", "--record", "-", "--json"], &["--json and --record -"]),
+        (&["run", "document", "--for", "1", "--record", "/nowhere/r.csv"], &["/nowhere/r.csv"]),
+        (&["run", "document", "--threads", "0"], &["--threads"]),
         (&["run", "gardn"], &["no scene `gardn`", "did you mean garden?", "assets/scenes/gardn.scene.ron"]),
         (&["run", "nowhere.creature.ron"], &["no creature `nowhere.creature.ron`"]),
         (&["run"], &["SCENE"]),
@@ -176,8 +176,8 @@ fn files_are_found_as_given_then_under_assets_then_embedded() {
     title("garden-worm.creature.ron", 9);
     assert_eq!(stiffness(), "9");
     // A folder of the same name is no file.
-    fs::create_dir(folder.path().join("garden")).unwrap();
-    assert_eq!(in_folder(folder.path(), &["run", "garden", "--for", "0"]).status.code(), Some(0));
+    fs::create_dir(folder.path().join("document")).unwrap();
+    assert_eq!(in_folder(folder.path(), &["run", "document", "--for", "0"]).status.code(), Some(0));
 }
 
 #[test]
@@ -186,7 +186,7 @@ fn list_names_scenes_creatures_methods_and_paths() {
     for word in ["garden  ", "Garden", "four-worms  ", "garden-worm", "SemiImplicitEuler", "RungeKutta4"] {
         assert!(all.contains(word), "`{word}` is missing in {all}");
     }
-    let paths = stdout(&wriggle(&["list", "--paths", "garden"]));
+    let paths = stdout(&wriggle(&["list", "--paths", "document"]));
     for word in ["worm.springs[1].stiffness", "worm.muscles.amplitude", "clock.dt", "0.0005", "0 to 10", "force/length"]
     {
         assert!(paths.contains(word), "`{word}` is missing in {paths}");
@@ -196,7 +196,7 @@ fn list_names_scenes_creatures_methods_and_paths() {
 #[test]
 fn a_closed_pipe_ends_quietly() {
     let mut run = Command::new(env!("CARGO_BIN_EXE_wriggle"))
-        .args(["run", "garden", "--record", "-"])
+        .args(["run", "document", "--record", "-"])
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
         .spawn()

@@ -5,6 +5,7 @@ use std::fs;
 use bevy::math::DVec3;
 use wriggle::{
     body::{Gravity, Muscle, Muscles, Particle, ParticleId, Particles, SpineFriction, Spring, SpringId, Springs, Wave},
+    creatures::library,
     lab::{
         Cache, Candidate, Problem, ProblemBody, Reference, Search, Setting, SweepOptions, cheapest, choose, frontier,
         measure, work_precision,
@@ -465,4 +466,23 @@ fn the_command_prints_its_choice_and_keeps_the_reference() {
     let said = |command| String::from_utf8(wriggle(&[command, "gardn"]).stderr).unwrap();
     assert_eq!(wriggle(&["choose", "gardn"]).status.code(), Some(2));
     assert_eq!(said("choose"), said("run"));
+}
+
+#[test]
+fn shipped_scenes_are_stepped_no_finer_and_no_coarser_than_they_need() {
+    for name in library::list(library::SCENE).into_keys() {
+        let scene = scenes::load(&name).unwrap();
+        // The document's preset is what the document says, and a race is about what is not chosen.
+        if name == "document" || scene.file.truth.is_some() {
+            continue;
+        }
+        let problem = Problem::of(&scene).unwrap();
+        let reference = Cache::none().reference(&problem).unwrap();
+        let found = choose(&problem, &reference, Search::Cheapest, &mut |_, _, _| {}).unwrap();
+        let Candidate { setting, error, cost } = found.own;
+        assert!(error.is_some_and(|error| error <= problem.budget), "{name}: {error:?} of {}", problem.budget);
+        assert!(cost <= 1.5 * found.choice.cost, "{name}: {cost}, and {:?} costs {}", found.choice, found.choice.cost);
+        let limit = problem.stability_limit(setting.method, setting.stick);
+        assert!(setting.dt <= 0.5 * limit, "{name}: {} of {limit}", setting.dt);
+    }
 }

@@ -40,6 +40,26 @@ fn followers_move_evenly_between_ticks() {
 }
 
 #[test]
+fn what_is_shown_moves_on_through_ticks_without_steps() {
+    // Steps of 0.2 at three units a second: a tick in four or five takes one, and a frame is less than a tick.
+    let (mut app, body) = moving(0.005);
+    app.insert_resource(Clock::new(0.2, 3.0).unwrap());
+    for _ in 0..100 {
+        app.update();
+    }
+    let at = |app: &App| f64::from(app.world().get::<Shown>(body).unwrap().positions()[0].x);
+    let mut last = at(&app);
+    for _ in 0..200 {
+        app.update();
+        let now = at(&app);
+        assert!((now - last - 0.015).abs() < 1e-5, "moved {} in a frame of 0.015", now - last);
+        last = now;
+    }
+    let time = app.world().resource::<Clock>().time();
+    assert!(last <= time + 1e-6 && last >= time - 0.25, "{last} at {time}");
+}
+
+#[test]
 fn what_is_shown_is_at_most_a_tick_behind() {
     let (mut app, body) = moving(0.011);
     for _ in 0..30 {

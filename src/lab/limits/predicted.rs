@@ -3,7 +3,7 @@
 //! For one oscillator these are the closed forms of the methods' own files. For a whole body:
 //!
 //! - **kicks** (semi-implicit Euler, Störmer–Verlet, damped Verlet): x⁺ − (2 − λ)x + (1 − λ)x⁻ = −h²Kx − hC(x − x⁻) is stable exactly while
-//!   λ_max(h²K + 2hC) ≤ 4 − 2λ, with any K and C.
+//!   λ_max(h²K + 2hC) ≤ 4 − 2λ, with any K and C. Leapfrog's centred damping leaves λ_max(h²K) ≤ 4.
 //! - **polynomials** (explicit Runge–Kutta methods): stable exactly while |R(hμ)| ≤ 1, R(z) = Σ zⁿ/n!, for all roots μ of the
 //!   quadratic eigenvalue problem μ² + μC + K.
 
@@ -29,8 +29,9 @@ const UNDAMPED: f64 = 1e-9;
 pub fn predicted_limit(body: &BodyParts<'_>) -> Option<f64> {
     let linear = Linear::of(body)?;
     match body.method {
-        Method::SemiImplicitEuler | Method::StormerVerlet => kicks(&linear, |h| (linear.mass_rate(h), 0.0)),
-        Method::DampedVerlet => kicks(&linear, |h| (0.0, -libm::expm1(-linear.mass_rate(h) * h))),
+        Method::SemiImplicitEuler | Method::StormerVerlet => kicks(&linear, 2.0, |h| (linear.mass_rate(h), 0.0)),
+        Method::DampedVerlet => kicks(&linear, 2.0, |h| (0.0, -libm::expm1(-linear.mass_rate(h) * h))),
+        Method::Leapfrog => kicks(&linear, 0.0, |_| (0.0, 0.0)),
         Method::ExplicitEuler => polynomial(&linear, 1),
         Method::RungeKutta2 => polynomial(&linear, 2),
         Method::RungeKutta4 => polynomial(&linear, 4),
@@ -39,8 +40,8 @@ pub fn predicted_limit(body: &BodyParts<'_>) -> Option<f64> {
     }
 }
 
-/// `by_mass` gives the rate of damping in proportion to mass that acts as a force, and the λ that acts on the velocity.
-fn kicks(linear: &Linear, by_mass: impl Fn(f64) -> (f64, f64)) -> Option<f64> {
+/// λ_max(h²K + `damped`·hC) ≤ 4 − 2λ − 2hc. `by_mass` gives the rate of damping in proportion to mass that acts as a force, and the λ that acts on the velocity.
+fn kicks(linear: &Linear, damped: f64, by_mass: impl Fn(f64) -> (f64, f64)) -> Option<f64> {
     let count = linear.stiffness.nrows();
     let mut failed = false;
     // Stable for sure without damping by mass: the fastest rate is no less than √λ_max(K) and than λ_max(C).
@@ -49,7 +50,7 @@ fn kicks(linear: &Linear, by_mass: impl Fn(f64) -> (f64, f64)) -> Option<f64> {
         let (rate, loss) = by_mass(h);
         let room = 4.0 - 2.0 * loss - 2.0 * h * rate;
         let matrix =
-            Mat::from_fn(count, count, |i, j| h * h * linear.stiffness[(i, j)] + 2.0 * h * linear.damping[(i, j)]);
+            Mat::from_fn(count, count, |i, j| h * h * linear.stiffness[(i, j)] + damped * h * linear.damping[(i, j)]);
         let values = spectrum(&matrix);
         failed |= values.is_none();
         values.is_some_and(|values| values.last().is_none_or(|&value| value <= room) && room >= 0.0)

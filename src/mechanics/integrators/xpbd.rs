@@ -48,16 +48,16 @@ impl<R: Real, const D: usize> Integrator<R, D> for Xpbd<R, D> {
             let (length, along) = direction(state.position[a], state.position[b]);
             model.overstretched = length.if_below(spring.longest, model.overstretched, one);
             let mut lengthened = zero;
-            for axis in 0..D {
+            for (axis, along) in along.into_iter().enumerate() {
                 let (moved_a, moved_b) =
                     (state.position[a][axis] - self.start[a][axis], state.position[b][axis] - self.start[b][axis]);
-                lengthened += (moved_b - moved_a) * along[axis];
+                lengthened += (moved_b - moved_a) * along;
             }
             let (stiff, damp) = (spring.stiffness * dt * dt, spring.damping * dt);
             let weight = model.inverse_mass[a] + model.inverse_mass[b];
             let multiplier = -(stiff * (length - rest) + damp * lengthened) / (one + (stiff + damp) * weight);
-            for axis in 0..D {
-                let push = along[axis] * multiplier;
+            for (axis, along) in along.into_iter().enumerate() {
+                let push = along * multiplier;
                 state.position[a][axis] -= push * model.inverse_mass[a];
                 state.position[b][axis] += push * model.inverse_mass[b];
             }
