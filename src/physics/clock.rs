@@ -162,6 +162,8 @@ impl Clock {
         let Pace::TimeScale(scale) = self.pace else { return overstep };
         let steps_a_tick = seconds * scale / self.timeline.dt;
         let passed = self.last_steps as f64 + self.carry + overstep * steps_a_tick - steps_a_tick.max(1.0);
-        if self.last_steps == 0 { 1.0 } else { (passed / self.last_steps as f64).clamp(0.0, 1.0) }
+        // A step that is due comes only with the next tick; until then the motion goes on as it was.
+        let most = if steps_a_tick < 1.0 { 1.0 + steps_a_tick } else { 1.0 };
+        if self.last_steps == 0 { 1.0 } else { (passed / self.last_steps as f64).clamp(0.0, most) }
     }
 }

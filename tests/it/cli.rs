@@ -69,18 +69,18 @@ fn a_recording_has_every_bit_and_ends_with_the_hashed_state() {
     let folder = TempDir::new().unwrap();
     let output = in_folder(
         folder.path(),
-        &["run", "four-worms", "--for", "1.5", "--record", "r.csv", "--every", "0.5", "--json"],
+        &["run", "four-worms", "--for", "1.5", "--record", "r.csv", "--every", "0.3", "--json"],
     );
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     let table = fs::read_to_string(folder.path().join("r.csv")).unwrap();
     let mut lines = table.lines();
     assert_eq!(lines.next(), Some("time,body,particle,x,y,z,vx,vy,vz"));
     let rows: Vec<Vec<&str>> = lines.map(|line| line.split(',').collect()).collect();
-    assert_eq!(rows.len(), 4 * 4 * 3);
+    assert_eq!(rows.len(), 6 * 4 * 3);
     assert_eq!(rows[0], ["0", "plain", "0", "0", "0", "-3", "0", "0", "0"]);
-    assert_eq!(rows[47][..3], ["1.5", "stiff", "2"]);
+    assert_eq!(rows[71][..3], ["1.5", "stiff", "2"]);
     // FNV-1a 64 of the last rows: all positions, then all velocities.
-    let last = &rows[36..];
+    let last = &rows[60..];
     let numbers = |columns: std::ops::Range<usize>| {
         last.iter().flat_map(move |row| row[columns.clone()].iter().map(|cell| cell.parse::<f64>().unwrap()))
     };
@@ -98,7 +98,7 @@ fn a_recording_has_every_bit_and_ends_with_the_hashed_state() {
 fn a_recording_goes_to_standard_output_and_takes_every_step() {
     let output = wriggle(&["run", "document", "--for", "0.005", "--record", "-"]);
     assert_eq!(stdout(&output).lines().count(), 1 + 11 * 3);
-    assert!(stderr(&output).contains("garden: 10 steps"), "{}", stderr(&output));
+    assert!(stderr(&output).contains("document: 10 steps"), "{}", stderr(&output));
 }
 
 #[test]

@@ -14,7 +14,7 @@ use wriggle::{
     },
 };
 
-use crate::support::{bits, particles, stepping_app};
+use crate::support::{bits, in_space, particles, stepping_app};
 
 const LOAD: f64 = 9.81;
 
@@ -129,13 +129,16 @@ fn assert_near(speed: f64, expected: f64, part: f64, what: &str) {
 
 #[test]
 fn two_masses_crawl_by_their_stroke_less_what_friction_takes_of_it_by_every_method() {
-    for method in Method::ALL {
+    for method in in_space() {
         let pair = Crawler { method, ..Crawler::PAIR };
         let expected = 0.25 * (0.2 - 2.0 * 0.2 * 0.1 * LOAD / 200.0);
         let speed = pair.speed(2000, 3);
-        assert_near(speed, expected, 0.01, method.name());
+        // Methods that solve for the velocity let Coulomb friction act at the end of the step in any case.
+        let solves = [Method::Leapfrog, Method::ImplicitMidpoint, Method::ImplicitEuler].contains(&method);
+        let (stiff, soft_part) = if solves { (0.05, 0.05) } else { (0.01, 0.015) };
+        assert_near(speed, expected, stiff, method.name());
         let soft = Crawler { stiffness: 20.0, damping: 1.0, ..pair }.speed(2000, 3);
-        assert_near(soft, 0.25 * (0.2 - 2.0 * 0.2 * 0.1 * LOAD / 20.0), 0.015, method.name());
+        assert_near(soft, 0.25 * (0.2 - 2.0 * 0.2 * 0.1 * LOAD / 20.0), soft_part, method.name());
         // Friction that knows no forward goes nowhere.
         let null = Crawler { backward: 0.2, ..pair }.speed(2000, 3);
         assert!(null.abs() < 1e-10, "{}: {null}", method.name());
@@ -185,7 +188,7 @@ fn pulled(force: f64, turn: f64) -> (Particles, Springs) {
 
 #[test]
 fn a_mass_that_is_pulled_less_than_friction_holds_does_not_move_by_one_bit() {
-    for method in Method::ALL {
+    for method in in_space() {
         for (turn, ground) in [(0.0, false), (0.7, false), (2.0, true)] {
             // XPBD pulls with the force at the end of a step, which is 0.3 % less. Friction holds 2·10·0.1 = 2 forward and 2·10·0.3 = 6 backward.
             for (force, moves) in [(1.99, false), (2.03, true), (-5.99, false), (-6.09, true)] {
@@ -208,7 +211,7 @@ fn a_mass_that_is_pulled_less_than_friction_holds_does_not_move_by_one_bit() {
 
 #[test]
 fn a_mass_slides_as_far_as_its_energy_lasts_and_stops_for_good() {
-    for method in Method::ALL {
+    for method in in_space() {
         for stick in [StickRule::InStages, StickRule::EndOfStep] {
             for (speed, way) in [(1.0, 1.0 / (2.0 * 2.0)), (-1.0, -1.0 / (2.0 * 5.0))] {
                 let sliding = Particle { velocity: DVec3::X * speed, ..Particle::at(DVec3::ZERO) };

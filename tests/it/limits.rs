@@ -56,6 +56,10 @@ fn closed_forms(method: Method) -> Option<[f64; 6]> {
 
 /// Within 2 %, and within 0.02 of the time of the fastest rate where the limit is 0.
 fn agree(found: f64, expected: f64, rate: f64) -> bool {
+    // What no step makes unstable grows by rounding alone, over thousands of oscillations in a step.
+    if expected.is_infinite() {
+        return found * rate > 1000.0;
+    }
     found == expected || if expected == 0.0 { found * rate <= 0.02 } else { (found / expected - 1.0).abs() <= 0.02 }
 }
 
@@ -308,10 +312,16 @@ fn without_friction_a_worm_explodes_where_its_step_begins_to_grow() {
     for method in Method::ALL {
         body.method = method;
         let linearised = linearised_limit(&body.parts()).unwrap();
+        if linearised.is_infinite() {
+            // Steps of half a cycle see the muscles as they are not; what that does is no matter of growth.
+            continue;
+        }
         let explodes = scene_limit(&body.parts(), linearised).unwrap();
         // By explicit Euler the muscles drive it far from its pose before its step grows by itself.
         let least = if method == Method::ExplicitEuler { 0.85 } else { 0.94 };
-        let near = explodes == linearised || (least..1.06).contains(&(explodes / linearised));
+        // Leapfrog's springs pass through zero and flip before its oscillation goes on to grow.
+        let most = if method == Method::Leapfrog { 1.08 } else { 1.06 };
+        let near = explodes == linearised || (least..most).contains(&(explodes / linearised));
         assert!(near, "{method:?}: explodes at {explodes}, grows from {linearised}");
     }
 }

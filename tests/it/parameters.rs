@@ -122,7 +122,7 @@ fn only_what_really_changes_is_marked_as_changed() {
             parameters::set(&mut world, &path, value).unwrap();
         }
     }
-    parameters::set_method(&mut world, Method::SemiImplicitEuler);
+    parameters::set_method(&mut world, Method::RungeKutta2);
     assert_eq!(changed(&mut world), ([false; 5], false));
     assert!(world.query::<&Gravity>().single(&world).is_err(), "a body without gravity got some");
 

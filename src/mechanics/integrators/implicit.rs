@@ -83,7 +83,8 @@ impl<const D: usize> Implicit<D> {
         }
         self.change.copy_from_slice(&self.velocity);
         model.finish_velocity(&state.position, &mut self.velocity);
-        let way = if scheme.admitted == 1.0 { &self.velocity } else { &self.change };
+        let ratchet_alone = model.stick == StickRule::InStages && model.coulomb.is_none();
+        let way = if scheme.admitted < 1.0 && ratchet_alone { &self.change } else { &self.velocity };
         for ((x, v), u) in state.position.iter_mut().zip(&state.velocity).zip(way) {
             for axis in 0..D {
                 x[axis] += model.dt * (v[axis] + scheme.velocity * (u[axis] - v[axis]));
