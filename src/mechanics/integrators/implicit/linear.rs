@@ -90,9 +90,9 @@ impl<const D: usize> Linear<D> {
                 })
             });
             for end in [a, b].into_iter().filter(|end| model.inverse_mass[*end] > 0.0) {
-                for row in 0..D {
-                    for column in 0..D {
-                        self.diagonal[end][row][column] += block[row][column];
+                for (sum, row) in self.diagonal[end].iter_mut().zip(&*block) {
+                    for (sum, value) in sum.iter_mut().zip(row) {
+                        *sum += value;
                     }
                 }
             }
