@@ -107,6 +107,33 @@ impl<R: Real, const D: usize> Model<R, D> {
         }
     }
 
+    /// Stops what the last stage of a step found at rest and held there: the sum of the stages still has the speed with which the step began.
+    #[inline(always)]
+    pub fn stop_held(
+        &self,
+        position: &[[R; D]],
+        stage_velocity: &[[R; D]],
+        acceleration: &[[R; D]],
+        velocity: &mut [[R; D]],
+    ) {
+        let (Some(friction), StickRule::InStages) = (self.friction, self.stick) else { return };
+        if !friction.ratchet {
+            return;
+        }
+        let zero = R::splat(0.0);
+        for &row in &self.spine {
+            let frame = self.frame(row, position);
+            let mass = row.particle as usize;
+            let soon = dot(stage_velocity[mass], frame.spine)
+                + dot(acceleration[mass], frame.spine) * R::splat(2.0 * AT_ONCE * self.dt);
+            let v = &mut velocity[mass];
+            let sliding = dot(*v, frame.spine);
+            // What starts to slip is let go; as above, rounding errors must not decide.
+            let stopped = (sliding.abs() * R::splat(AT_ONCE)).if_below(soon, zero, sliding);
+            subtract(v, frame.spine, stopped * frame.touches);
+        }
+    }
+
     /// Adds drag and grip to all accelerations, and takes from them what friction does not admit: that a mass which does not slide forward starts
     /// to slide back. `velocity` is admitted already. Nothing where friction acts at the end of a step.
     #[inline(always)]

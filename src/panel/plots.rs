@@ -18,16 +18,17 @@ pub fn section(ui: &mut egui::Ui, settings: &mut Settings, traces: &Traces) {
     if traces.time.is_empty() {
         ui.weak("The plots begin with the first tick.");
     } else {
-        lengths(ui, traces);
-        velocities(ui, traces);
-        distance(ui, traces);
+        let shown = span(settings, traces);
+        lengths(ui, traces, shown);
+        velocities(ui, traces, shown);
+        distance(ui, traces, shown);
     }
     cost(ui, settings, traces);
 }
 
-fn lengths(ui: &mut egui::Ui, traces: &Traces) {
+fn lengths(ui: &mut egui::Ui, traces: &Traces, shown: (f64, f64)) {
     legend(ui, "spring length (thin: rest length)", traces.springs.iter().map(|trace| trace.name.as_str()));
-    show(ui, "lengths", span(&traces.time), |plot| {
+    show(ui, "lengths", shown, |plot| {
         for (trace, color) in traces.springs.iter().zip(SERIES) {
             let rest = format!("rest length {}", trace.name);
             plot.line(Line::new(rest, points(&traces.time, &trace.rest)).color(faint(color, 0.6)).width(1.0));
@@ -36,9 +37,9 @@ fn lengths(ui: &mut egui::Ui, traces: &Traces) {
     });
 }
 
-fn velocities(ui: &mut egui::Ui, traces: &Traces) {
+fn velocities(ui: &mut egui::Ui, traces: &Traces, shown: (f64, f64)) {
     legend(ui, "velocity (bars: at rest)", traces.masses.iter().map(|trace| trace.name.as_str()));
-    show(ui, "velocities", span(&traces.time), |plot| {
+    show(ui, "velocities", shown, |plot| {
         // A lane below zero for each mass: shades across the whole plot would hide each other.
         let fastest = traces.masses.iter().flat_map(|trace| trace.velocity.iter()).fold(0.0_f64, |a, v| a.max(v.abs()));
         let lane = (fastest * 0.12).max(1e-9);
@@ -58,10 +59,10 @@ fn velocities(ui: &mut egui::Ui, traces: &Traces) {
     });
 }
 
-fn distance(ui: &mut egui::Ui, traces: &Traces) {
+fn distance(ui: &mut egui::Ui, traces: &Traces, shown: (f64, f64)) {
     let now = traces.distance.last().copied().unwrap_or_default();
     legend(ui, &format!("distance travelled: {now:.2}"), []);
-    show(ui, "distance", span(&traces.time), |plot| {
+    show(ui, "distance", shown, |plot| {
         plot.line(Line::new("distance", points(&traces.time, &traces.distance)).color(SERIES[0]).width(1.8));
     });
 }
@@ -133,8 +134,12 @@ fn points<'a>(time: &Ring<f64>, values: &Ring<f64>) -> PlotPoints<'a> {
     time.iter().zip(values.iter()).map(|(&time, &value)| [time, value]).collect()
 }
 
-fn span(time: &Ring<f64>) -> (f64, f64) {
-    (time.first().copied().unwrap_or_default(), time.last().copied().unwrap_or_default())
+/// The last ten seconds of what was recorded, in simulated time.
+fn span(settings: &Settings, traces: &Traces) -> (f64, f64) {
+    let scale = settings.get("clock.time_scale").map_or(1.0, |setting| setting.value);
+    let end = traces.time.last().copied().unwrap_or_default();
+    let recorded = traces.time.first().copied().unwrap_or_default();
+    (if scale > 0.0 { recorded.max(end - 10.0 * scale) } else { recorded }, end)
 }
 
 fn faint(color: Color32, opacity: f32) -> Color32 {

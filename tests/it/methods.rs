@@ -116,6 +116,30 @@ fn friction_at_the_end_of_the_step_makes_every_method_first_order() {
 }
 
 #[test]
+fn a_mass_that_stops_within_a_step_comes_to_true_rest() {
+    // How much of the time each mass of the garden's worm rests, by the exact flow: .225, .275, .343.
+    for method in Method::ALL {
+        if [Method::ExplicitEuler, Method::ImplicitEuler, Method::Xpbd].contains(&method) {
+            // At this step they crawl another way.
+            continue;
+        }
+        let mut app = stepping_app(0.1, 1);
+        let body = app.world_mut().spawn(Worm { method, ..Worm::GARDEN }.body()).id();
+        let mut rests = [0; 3];
+        for step in 0..600 {
+            app.update();
+            for (rests, velocity) in rests.iter_mut().zip(particles(&app, body).velocities()) {
+                *rests += i32::from(step >= 300 && velocity == DVec3::ZERO);
+            }
+        }
+        for (rests, exact) in rests.into_iter().zip([0.225, 0.275, 0.343]) {
+            let part = f64::from(rests) / 300.0;
+            assert!((part - exact).abs() < 0.06, "{method:?}: rests {part} of the time, exactly {exact}");
+        }
+    }
+}
+
+#[test]
 fn what_no_step_makes_unstable_stays_bounded_a_thousand_times_beyond() {
     // ω·dt = 1000 for the fastest mode, ω² = 3k/m, with the muscles running.
     let dt = 0.05;

@@ -77,6 +77,7 @@ impl<R: Real, const D: usize> Stages<R, D> {
                 state.velocity[i][axis] += self.sum.velocity[i][axis] * dt;
             }
         }
+        model.stop_held(&self.stage.position, &self.stage.velocity, &self.acceleration, &mut state.velocity);
         model.finish_velocity(&state.position, &mut state.velocity);
         model.apply_contact(state);
     }
