@@ -2,7 +2,7 @@
 
 use bevy::ecs::prelude::*;
 use bevy_egui::egui::{self, Color32, RichText, vec2};
-use egui_plot::{GridMark, HLine, Legend, Line, LineStyle, MarkerShape, Plot, PlotPoint, Points, Text};
+use egui_plot::{GridMark, HLine, Line, LineStyle, MarkerShape, Plot, PlotPoint, Points, Text};
 use std::sync::mpsc::{Receiver, channel};
 
 use super::{
@@ -67,7 +67,6 @@ fn draw(ui: &mut egui::Ui, chart: &WorkPrecision, settings: &Settings) {
         .allow_scroll(false)
         .x_axis_formatter(power)
         .y_axis_formatter(power)
-        .legend(Legend::default().text_style(egui::TextStyle::Small).background_alpha(0.4))
         .show(ui, |plot| {
             plot.hline(
                 HLine::new("budget", libm::log10(chart.budget)).color(colors::GREEN).style(LineStyle::dashed_loose()),
@@ -91,6 +90,13 @@ fn draw(ui: &mut egui::Ui, chart: &WorkPrecision, settings: &Settings) {
             }
         });
     ui.spacing_mut().item_spacing = vec2(6.0, 1.0);
+    ui.horizontal_wrapped(|ui| {
+        for (index, method) in methods(chart).into_iter().enumerate() {
+            let mark = ["●", "◆", "■"][index / SERIES.len() % 3];
+            let color = SERIES[index % SERIES.len()];
+            ui.label(RichText::new(format!("{mark} {}", method.name())).small().color(color));
+        }
+    });
     ui.label(RichText::new(format!("budget {:.2e} · over {} of time", chart.budget, chart.duration)).small().weak());
     ui.label(RichText::new(&chart.reference).small().weak());
 }
