@@ -4,6 +4,7 @@ use bevy::{ecs::prelude::*, prelude::Name};
 
 use crate::{
     body::{CoulombFriction, Gravity, Ground, MassDamping, Muscles, Particles, SpineFriction, Springs},
+    creatures::FileError,
     mechanics::{
         BodyParts,
         integrators::{Method, StickRule},
@@ -40,12 +41,35 @@ pub struct ProblemBody {
     pub gravity: Option<Gravity>,
     /// The ground that it stands on, if any.
     pub ground: Option<Ground>,
-    /// Its damping by what surrounds it, if any, as a rate: what is given for a step has the rate that it has at the scene's own step, so that the physics
-    /// does not change with the step.
+    /// Its damping by what surrounds it, if any.
     pub mass_damping: Option<MassDamping>,
 }
 
 impl ProblemBody {
+    /// The bodies of a scene with the parameters that its file sets, and the scene's clock.
+    pub(super) fn all(scene: &LoadedScene) -> Result<(Vec<Self>, Clock), FileError> {
+        let mut world = World::new();
+        scenes::open(&mut world, scene.clone())?;
+        let entities = world.resource::<SceneBodies>().0.clone();
+        let bodies = entities.into_iter().filter_map(|entity| Self::of(world.get_entity(entity).ok()?)).collect();
+        Ok((bodies, world.resource::<Clock>().clone()))
+    }
+
+    fn of(entity: EntityRef<'_>) -> Option<Self> {
+        Some(Self {
+            name: entity.get::<Name>().map_or("body", Name::as_str).to_owned(),
+            particles: entity.get::<Particles>()?.clone(),
+            springs: entity.get::<Springs>()?.clone(),
+            muscles: entity.get::<Muscles>().filter(|muscles| !muscles.is_empty()).cloned(),
+            friction: entity.get::<SpineFriction>().cloned(),
+            coulomb: entity.get::<CoulombFriction>().cloned(),
+            // Gravity of zero is none: it must not cost a body its axis.
+            gravity: entity.get::<Gravity>().copied().filter(|gravity| gravity.acceleration() > 0.0),
+            ground: entity.get::<Ground>().copied(),
+            mass_damping: entity.get::<MassDamping>().copied(),
+        })
+    }
+
     /// Borrows the body for mechanics.
     pub fn parts(&self, method: Method, stick: StickRule) -> BodyParts<'_> {
         BodyParts {
@@ -111,7 +135,8 @@ pub struct Problem {
     pub name: String,
     /// The scene's title.
     pub title: String,
-    /// The bodies in the order of the scene.
+    /// The bodies in the order of the scene. Damping that is given for a step has the rate that it has at the scene's own step, so that the physics does
+    /// not change with the step.
     pub bodies: Vec<ProblemBody>,
     /// The scene's own method and step.
     pub setting: Setting,
@@ -131,12 +156,11 @@ impl Problem {
     /// # Errors
     /// If a body cannot be built, which loading the scene has found out before.
     pub fn of(scene: &LoadedScene) -> Result<Self, LabError> {
-        let mut world = World::new();
-        scenes::open(&mut world, scene.clone())?;
-        let clock = world.resource::<Clock>().clone();
+        let (mut bodies, clock) = ProblemBody::all(scene)?;
         let dt = clock.dt();
-        let entities = world.resource::<SceneBodies>().0.clone();
-        let bodies = entities.into_iter().filter_map(|entity| body(world.get_entity(entity).ok()?, dt)).collect();
+        for body in &mut bodies {
+            body.mass_damping = body.mass_damping.map(|damping| MassDamping::Rate(damping.rate_at(dt)));
+        }
         let file = &scene.file;
         let mut problem = Self {
             name: scene.source.stem(),
@@ -192,19 +216,4 @@ impl Problem {
         self.bodies.iter().for_each(|body| body.hash(&mut hash));
         hash.finish()
     }
-}
-
-fn body(entity: EntityRef<'_>, dt: f64) -> Option<ProblemBody> {
-    Some(ProblemBody {
-        name: entity.get::<Name>().map_or("body", Name::as_str).to_owned(),
-        particles: entity.get::<Particles>()?.clone(),
-        springs: entity.get::<Springs>()?.clone(),
-        muscles: entity.get::<Muscles>().filter(|muscles| !muscles.is_empty()).cloned(),
-        friction: entity.get::<SpineFriction>().cloned(),
-        coulomb: entity.get::<CoulombFriction>().cloned(),
-        // Gravity of zero is none: it must not cost a body its axis.
-        gravity: entity.get::<Gravity>().copied().filter(|gravity| gravity.acceleration() > 0.0),
-        ground: entity.get::<Ground>().copied(),
-        mass_damping: entity.get::<MassDamping>().map(|damping| MassDamping::Rate(damping.rate_at(dt))),
-    })
 }

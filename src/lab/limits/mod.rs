@@ -4,7 +4,7 @@
 //! of the method; the **bound** is the cheap one that the gauge uses; the **linearised** limit is found by bisection on the growth of the
 //! method's own step near the body's pose, with friction and contact off; and at the **scene**'s limit the body explodes with its muscles running.
 
-mod body;
+mod alike;
 mod linear;
 mod predicted;
 mod scene;
@@ -13,9 +13,7 @@ mod step_matrix;
 
 use serde::{Serialize, Serializer};
 
-use crate::{creatures::FileError, mechanics::integrators::Method, scenes::LoadedScene};
-
-use body::LimitBody;
+use crate::{creatures::FileError, lab::ProblemBody, mechanics::integrators::Method, scenes::LoadedScene};
 
 pub use predicted::predicted_limit;
 pub use scene::scene_limit;
@@ -56,9 +54,9 @@ pub struct Limits {
 /// If a body cannot be built, which loading the scene has found out before.
 pub fn limits(scene: &LoadedScene) -> Result<Vec<Limits>, FileError> {
     let mut rows = Vec::new();
-    for body in LimitBody::distinct(scene)? {
+    for body in alike::distinct(ProblemBody::all(scene)?.0) {
         for method in Method::ALL {
-            let parts = body.parts(method);
+            let parts = body.parts(method, scene.file.stick);
             let linearised = linearised_limit(&parts);
             let explodes = linearised.and_then(|linearised| scene_limit(&parts, linearised));
             let reason = linearised

@@ -8,7 +8,12 @@
 
 mod linear;
 
-use crate::mechanics::{Model, State, forces::direction, friction::Frame, integrators::StickRule};
+use crate::mechanics::{
+    Model, State,
+    forces::direction,
+    friction::{Frame, dot, subtract},
+    integrators::StickRule,
+};
 
 use linear::Linear;
 
@@ -353,16 +358,6 @@ fn largest<const D: usize>(model: &Model<f64, D>, impulses: &[[f64; D]]) -> f64 
         impulses.iter().zip(&model.inverse_mass).flat_map(|(row, inverse_mass)| row.map(|p| (p * inverse_mass).abs()));
     // `f64::max` would lose a NaN.
     each.fold(0.0, |most, value| if value > most || value.is_nan() { value } else { most })
-}
-
-fn dot<const D: usize>(a: [f64; D], b: [f64; D]) -> f64 {
-    (0..D).map(|axis| a[axis] * b[axis]).sum()
-}
-
-fn subtract<const D: usize>(v: &mut [f64; D], along: [f64; D], amount: f64) {
-    for axis in 0..D {
-        v[axis] -= amount * along[axis];
-    }
 }
 
 fn largest_of<const D: usize>(v: &[f64; D]) -> f64 {

@@ -9,9 +9,13 @@ use faer::{
     },
 };
 
-use crate::mechanics::{Model, State, forces::direction, friction::Frame};
+use crate::mechanics::{
+    Model, State,
+    forces::direction,
+    friction::{Frame, dot},
+};
 
-use super::{Diverged, Scheme, dot, project, stuck_masses};
+use super::{Diverged, Scheme, project, stuck_masses};
 
 /// Bodies of more unknowns than this are solved by conjugate gradients.
 const MOST_FACTORISED: usize = 48;
