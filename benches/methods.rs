@@ -89,7 +89,7 @@ fn benchmarks(c: &mut Criterion) {
     let mut group = c.benchmark_group("step");
     group.warm_up_time(Duration::from_millis(300)).measurement_time(Duration::from_secs(2)).sample_size(10);
     for body in &bodies {
-        let dt = 0.5 * body.parts(Method::RungeKutta4).stability_limit(false);
+        let dt = 0.5 * body.parts(Method::RungeKutta4).stability_limit(0.0);
         for method in Method::ALL {
             let parts = body.parts(method);
             let id = BenchmarkId::new(method.name(), body.name);

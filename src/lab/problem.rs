@@ -86,9 +86,9 @@ impl ProblemBody {
         }
     }
 
-    /// The largest stable step of a method, safe in every pose that the body may come into.
+    /// The largest stable step of a method in the pose that the body starts in.
     pub fn stability_limit(&self, method: Method, stick: StickRule) -> f64 {
-        self.parts(method, stick).stability_limit(true)
+        self.parts(method, stick).stability_limit(0.0)
     }
 
     fn hash(&self, hash: &mut Fnv) {

@@ -22,5 +22,5 @@ pub use energy::{angular_momentum, elastic_energy, kinetic_energy, momentum};
 pub use forces::rest_length;
 pub use model::{BodyParts, Explosion, Model, State};
 pub use real::{Lanes, Real};
-pub use stability::{Damping, Rates, StabilityBound, is_stretched, stability_bound};
+pub use stability::{Damping, Rates, StabilityBound, stability_bound};
 pub use wave::sin_cycles;

@@ -1,18 +1,23 @@
 //! How large a step may be, predicted from the springs.
 //!
-//! For masses M, stiffness matrix K and damping matrix C of the linearised body, the fastest oscillation is bounded without any eigenvalue
-//! by sums over neighbours, by Gershgorin's theorem on one of two matrices with the same spectrum:
+//! For masses M, stiffness matrix K and damping matrix C of the linearised body, the fastest oscillation is bounded from above:
 //!
 //! - **directional edge bound**: for a spring e, Σ over springs f that share an end with it of w_f |n_e·n_f|/m, with
 //!   directions n and the mass m of the shared end (both ends for e itself). Exact for a chain of three. It leaves out the stiffness
-//!   that a stretched spring has across its line.
-//! - **node bound**: for a particle, 2/m·Σ of w over its springs. Safe in every pose, and looser.
+//!   that a stretched spring has across its line, k(1 − L/l), which a body on an axis does not feel. By Gershgorin's theorem.
+//! - **node bound**: for a particle, 2/m·Σ of w over its springs. Safe in every pose, and looser: a quarter of the limit of a cube. By the same theorem.
+//! - **[Lanczos bound](largest_eigenvalue)**: near the largest eigenvalue of M⁻¹K, and of M⁻¹C, in the present pose. Where a body can move across its springs, it is the tightest
+//!   of the three, and the least of them counts.
+
+mod lanczos;
 
 use bevy::math::DVec3;
 
-use crate::body::{MassDamping, ParticleId, Particles, SpringId};
+use crate::body::{MassDamping, ParticleId, Particles, Spring, SpringId};
 
 use super::{BodyParts, rest_length};
+
+use lanczos::largest_eigenvalue;
 
 /// Bounds of one row of the body's equations, from above.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,12 +40,14 @@ pub enum Damping {
 /// What a method's largest stable step is computed from.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StabilityBound {
-    /// One pair of rates a spring (directional) or a particle (node).
+    /// One pair of rates a spring on an axis, one for the whole body in space.
     pub rates: Vec<Rates>,
     /// How damping goes with stiffness.
     pub damping: Damping,
     /// β: no mode is damped less by the springs than γ = βκ; the least D/k of all springs.
     pub least_ratio: f64,
+    /// No mode is damped more by the springs than γ = βκ with this β; the largest D/k of all springs, and infinite where nothing is known.
+    pub most_ratio: f64,
     /// The rate c of damping in proportion to mass; 0 where it is given for a step.
     pub mass_damping: f64,
     /// The damping in proportion to mass that is given as a part of the velocity in each step.
@@ -49,15 +56,24 @@ pub struct StabilityBound {
     pub friction: f64,
 }
 
-/// Bounds the oscillations of a body in its present pose. While a spring is [`stretched`](is_stretched), a body that can move across its
-/// springs gets the node bound; else, and [on an axis](BodyParts::on_axis), where there is no across, the directional one.
-pub fn stability_bound(body: &BodyParts<'_>, stretched: bool) -> StabilityBound {
-    let rates = if stretched && !body.on_axis() { node_rates(body) } else { directional_rates(body) };
+/// Bounds the oscillations of a body in its present pose, with its rest lengths as at `time`.
+pub fn stability_bound(body: &BodyParts<'_>, time: f64) -> StabilityBound {
+    let [least, most] = ratios(body);
+    let (rates, least_ratio, most_ratio) = if body.on_axis() {
+        (directional_rates(body), least, most)
+    } else {
+        let lines = lines(body, time);
+        let across = lines.iter().any(|line| line.across > 0.0);
+        let rates = vec![rates_in_space(body, &lines, across)];
+        let squeezed = lines.iter().any(|line| line.across < 0.0);
+        // Across a stretched spring there is stiffness and no damping; a squeezed one takes stiffness away.
+        (rates, if across { 0.0 } else { least }, if squeezed { f64::INFINITY } else { most })
+    };
     StabilityBound {
         rates,
         damping: damping_law(body),
-        // Across a stretched spring there is stiffness and no damping.
-        least_ratio: if stretched && !body.on_axis() { 0.0 } else { least_ratio(body) },
+        least_ratio,
+        most_ratio,
         mass_damping: match body.mass_damping {
             Some(MassDamping::Rate(rate)) => rate,
             _ => 0.0,
@@ -90,19 +106,64 @@ impl StabilityBound {
 }
 
 impl BodyParts<'_> {
-    /// The largest dt at which the body's method is stable, never above the true limit of the linearised body; infinite for a body that
-    /// cannot oscillate.
-    pub fn stability_limit(&self, stretched: bool) -> f64 {
-        self.method.stability_limit(&stability_bound(self, stretched))
+    /// The largest dt at which the body's method is stable in its present pose, with its rest lengths as at `time`: never above the true limit of
+    /// the linearised body. Infinite for a body that cannot oscillate.
+    pub fn stability_limit(&self, time: f64) -> f64 {
+        self.method.stability_limit(&stability_bound(self, time))
     }
 }
 
-/// Whether a spring is longer than its rest length at `time`.
-pub fn is_stretched(body: &BodyParts<'_>, time: f64) -> bool {
-    body.springs.iter().enumerate().any(|(i, spring)| {
+/// A spring in its present pose.
+#[derive(Clone, Copy, Debug)]
+struct Line {
+    ends: [usize; 2],
+    /// From the first end to the second, of length 1; zero where the spring has no length.
+    direction: DVec3,
+    /// Stiffness and damping along it.
+    stiffness: f64,
+    damping: f64,
+    /// Stiffness across it, k(1 − L/l): negative while it is squeezed.
+    across: f64,
+}
+
+fn lines(body: &BodyParts<'_>, time: f64) -> Vec<Line> {
+    let line = |(i, spring): (usize, Spring)| {
         let rest = rest_length(body.springs, body.muscles, SpringId(i as u32), time);
-        difference(body.particles, spring.ends).length() > rest
-    })
+        let difference = difference(body.particles, spring.ends);
+        let (direction, length) = difference.normalize_and_length();
+        Line {
+            ends: spring.ends.map(ParticleId::index),
+            direction,
+            stiffness: spring.stiffness,
+            damping: spring.damping,
+            // A spring of no length has a direction only once it moves: any.
+            across: if length > 0.0 { spring.stiffness * (1.0 - rest / length) } else { spring.stiffness },
+        }
+    };
+    body.springs.iter().enumerate().map(line).collect()
+}
+
+/// The least of what bounds each rate of a body that can move across its springs.
+fn rates_in_space(body: &BodyParts<'_>, lines: &[Line], across: bool) -> Rates {
+    let inverse_mass = inverse_masses(body.particles);
+    let most = |rates: Vec<Rates>| {
+        rates.into_iter().fold(Rates { stiffness: 0.0, damping: 0.0 }, |a, b| Rates {
+            stiffness: a.stiffness.max(b.stiffness),
+            damping: a.damping.max(b.damping),
+        })
+    };
+    let node = most(node_rates(body));
+    let safe = if across {
+        node
+    } else {
+        let directional = most(directional_rates(body));
+        Rates { stiffness: node.stiffness.min(directional.stiffness), damping: node.damping.min(directional.damping) }
+    };
+    let stiffness = largest_eigenvalue(lines, &inverse_mass, |line| (line.stiffness, line.across.max(0.0)));
+    let damping = largest_eigenvalue(lines, &inverse_mass, |line| {
+        (line.damping, if line.direction == DVec3::ZERO { line.damping } else { 0.0 })
+    });
+    Rates { stiffness: safe.stiffness.min(stiffness), damping: safe.damping.min(damping) }
 }
 
 fn difference(particles: &Particles, [a, b]: [ParticleId; 2]) -> DVec3 {
@@ -158,10 +219,11 @@ fn node_rates(body: &BodyParts<'_>) -> Vec<Rates> {
     rates
 }
 
-fn least_ratio(body: &BodyParts<'_>) -> f64 {
-    let springs = body.springs.iter().filter(|spring| spring.stiffness > 0.0);
-    let least = springs.map(|spring| spring.damping / spring.stiffness).fold(f64::INFINITY, f64::min);
-    if least.is_finite() { least } else { 0.0 }
+/// The least and the largest D/k of all springs; 0 and infinite where no spring has any stiffness.
+fn ratios(body: &BodyParts<'_>) -> [f64; 2] {
+    let springs = body.springs.iter().filter(|spring| spring.stiffness > 0.0 || spring.damping > 0.0);
+    let ratios = springs.map(|spring| spring.damping / spring.stiffness);
+    ratios.map(|ratio| [ratio; 2]).reduce(|[a, b], [c, d]| [a.min(c), b.max(d)]).unwrap_or([0.0, f64::INFINITY])
 }
 
 fn damping_law(body: &BodyParts<'_>) -> Damping {

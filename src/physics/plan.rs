@@ -14,7 +14,6 @@ use crate::{
     mechanics::{
         BodyParts,
         integrators::{Method, StickRule},
-        is_stretched,
     },
 };
 
@@ -59,7 +58,8 @@ pub struct Plan {
     /// Equal for bodies that may be stepped side by side; different ones are equal only by a rare accident.
     pub(super) topology: u64,
     stability_limit: f64,
-    stretched: bool,
+    /// The step after which the limit was worked out.
+    limited_at: u64,
     /// The dt for which a warning was given last.
     warned: Option<f64>,
     /// Why the body cannot be stepped at all.
@@ -73,12 +73,21 @@ impl Plan {
         self.stability_limit
     }
 
+    fn limit(&mut self, body: &BodyParts<'_>, clock: &Clock) {
+        self.stability_limit = body.stability_limit(clock.time());
+        self.limited_at = clock.step();
+    }
+
     /// The stability limit with four decimals, or four digits where it is small.
     pub fn limit_text(&self) -> String {
         let limit = self.stability_limit;
         if limit < 0.01 { format!("{limit:.3e}") } else { format!("{limit:.4}") }
     }
 }
+
+/// The limit of a body that can move across its springs changes with its pose, and is worked out again after so many steps: it costs as much as some
+/// thirty of them.
+const STEPS_PER_LIMIT: u64 = 512;
 
 type Changes = Or<(
     Added<Plan>,
@@ -104,24 +113,21 @@ pub(super) fn plan(clock: Res<Clock>, mut bodies: Query<(&Particles, Parts, &mut
             continue;
         }
         plan.topology = topology(&body);
-        plan.stretched = is_stretched(&body, clock.time());
-        plan.stability_limit = body.stability_limit(plan.stretched);
+        plan.limit(&body, &clock);
     }
 }
 
-/// Plans every body again of which a spring went over its rest length or all came back, and warns where dt is above a limit.
+/// Works out the limit again of every body whose pose may have changed it, and warns where dt is above a limit.
 pub(super) fn watch_limit(
     clock: Res<Clock>,
     mut bodies: Query<(Option<&Name>, &Particles, Parts, &mut Plan), Without<Frozen>>,
 ) {
     for (name, particles, parts, mut plan) in &mut bodies {
         let body = parts.body(particles);
-        if plan.misfit.is_none() && !body.on_axis() {
-            let stretched = is_stretched(&body, clock.time());
-            if stretched != plan.stretched {
-                plan.stretched = stretched;
-                plan.stability_limit = body.stability_limit(stretched);
-            }
+        // A restart counts from 0 again.
+        let aged = clock.step().checked_sub(plan.limited_at).is_none_or(|steps| steps >= STEPS_PER_LIMIT);
+        if aged && plan.misfit.is_none() && !body.on_axis() {
+            plan.limit(&body, &clock);
         }
         let dt = clock.dt();
         if dt <= plan.stability_limit {

@@ -428,7 +428,7 @@ fn one_stiff_spring_or_light_mass_costs_an_explicit_method_the_root_of_the_ratio
         };
         let springs = Springs::new([0, 1].map(spring), &particles).unwrap();
         let row = Row { muscles: Muscles::new([], &springs).unwrap(), particles, springs };
-        row.parts(method).stability_limit(false)
+        row.parts(method).stability_limit(0.0)
     };
     for method in [Method::SemiImplicitEuler, Method::StormerVerlet, Method::RungeKutta4] {
         let cost = |stiffness, mass| limit(1.0, 1.0, method) / limit(stiffness, mass, method);

@@ -6,7 +6,6 @@ use wriggle::{
     mechanics::{
         BodyParts,
         integrators::{Method, StickRule},
-        is_stretched,
     },
     physics::Plan,
 };
@@ -69,19 +68,12 @@ fn the_worm_limit_is_safe_and_no_less_than_half_at_rest_and_stretched() {
                 for i in 0..3 {
                     body.particles.set(ParticleId(i), Particle::at(DVec3::X * gap * f64::from(i))).unwrap();
                 }
-                let stretched = is_stretched(&body.parts(), 0.0);
-                assert_eq!(stretched, gap > 1.0);
-                let predicted = body.parts().stability_limit(stretched);
+                let predicted = body.parts().stability_limit(0.0);
                 let truth = true_limit(method, &[(1.5, damping), (4.5, 3.0 * damping)]);
                 assert_bounds(predicted, truth, &format!("{method:?}, D {damping}, gap {gap}"));
-                // Free to move off the axis, it gets the safer bound while it is stretched, and stays within the same limits.
+                // Free to move off the axis, it also has the stiffness across its springs to count with.
                 let free = BodyParts { gravity: Some(Gravity::new(0.0).unwrap()), ..body.parts() };
-                assert_bounds(
-                    free.stability_limit(stretched),
-                    truth,
-                    &format!("{method:?}, D {damping}, gap {gap}, free"),
-                );
-                assert!(!stretched || free.stability_limit(true) < predicted);
+                assert_bounds(free.stability_limit(0.0), truth, &format!("{method:?}, D {damping}, gap {gap}, free"));
             }
         }
     }
@@ -89,7 +81,7 @@ fn the_worm_limit_is_safe_and_no_less_than_half_at_rest_and_stretched() {
 
 #[test]
 fn the_limit_of_the_garden_worm_is_the_known_one() {
-    let limit = Worm::GARDEN.body().parts().stability_limit(false);
+    let limit = Worm::GARDEN.body().parts().stability_limit(0.0);
     assert!((limit - 0.5175).abs() < 5e-5, "{limit}");
 }
 
@@ -121,7 +113,7 @@ fn the_bound_is_the_true_limit_of_a_long_chain_and_safe_for_unequal_masses() {
             method: Method::SemiImplicitEuler,
             stick: StickRule::InStages,
         };
-        parts.stability_limit(false)
+        parts.stability_limit(0.0)
     };
     // ω_max = 2√(k/m)·cos(π/2n).
     let even = chain(40, &|_| 1.0, &|_| 2.0);

@@ -68,7 +68,7 @@ pub fn limits(scene: &LoadedScene) -> Result<Vec<Limits>, FileError> {
                 body: body.name.clone(),
                 method,
                 predicted: predicted_limit(&parts),
-                bound: parts.stability_limit(false),
+                bound: parts.stability_limit(0.0),
                 linearised,
                 explodes,
                 reason,

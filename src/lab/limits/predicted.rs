@@ -35,7 +35,7 @@ pub fn predicted_limit(body: &BodyParts<'_>) -> Option<f64> {
         Method::ExplicitEuler => polynomial(&linear, 1),
         Method::RungeKutta2 => polynomial(&linear, 2),
         Method::RungeKutta4 => polynomial(&linear, 4),
-        _ if body.stability_limit(true) == f64::INFINITY => Some(f64::INFINITY),
+        _ if body.stability_limit(0.0) == f64::INFINITY => Some(f64::INFINITY),
         _ => None,
     }
 }

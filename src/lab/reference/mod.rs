@@ -98,7 +98,7 @@ impl Reference {
 /// One body by both schemes: the track of the first, and how far the other is from it.
 fn both<const D: usize>(problem: &Problem, body: &ProblemBody) -> Result<(Track, f64), Broken> {
     let times = problem.times();
-    let bound = stability_bound(&body.parts(Method::default(), StickRule::default()), true);
+    let bound = stability_bound(&body.parts(Method::default(), StickRule::default()), 0.0);
     let stiffest = bound.rates.iter().map(|rates| rates.stiffness).fold(0.0, f64::max).sqrt();
     let damping = bound.rates.iter().map(|rates| rates.damping).fold(0.0, f64::max);
     let drive = body.muscles.iter().flat_map(|muscles| muscles.iter()).map(|muscle| 6.3 / muscle.period);

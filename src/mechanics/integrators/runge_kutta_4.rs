@@ -11,6 +11,7 @@ use crate::mechanics::{
 
 use super::{
     About, Integrator,
+    explicit_euler::fastest_decay,
     stages::{Stage, Stages},
 };
 
@@ -45,20 +46,27 @@ impl<R: Real, const D: usize> Integrator<R, D> for RungeKutta4<R, D> {
 
 /// The smallest |z| in the left half-plane at which |1 + z + z²/2 + z³/6 + z⁴/24| = 1 (at a damping ratio near ½), rounded down.
 const STABLE_RADIUS: f64 = 2.615;
+/// The same on the real axis.
+const STABLE_DECAY: f64 = 2.785;
 
-/// A mode e^(μt) is stable while |μ|·dt is within the method's region of stability, and thus surely within its [`STABLE_RADIUS`].
+/// A mode e^(μt) is stable while μ·dt is within the method's region of stability: surely while |μ|·dt is within its [`STABLE_RADIUS`], and where μ is
+/// real, within its [`STABLE_DECAY`].
 pub(super) fn stability_limit(bound: &StabilityBound) -> f64 {
     let stiffness = bound.rates.iter().map(|rates| rates.stiffness).fold(0.0, f64::max);
     let damping = bound.rates.iter().map(|rates| rates.damping).fold(0.0, f64::max);
-    let frequency = stiffness.sqrt();
-    let fastest = match bound.damping {
-        // Every mode has γ = βκ, and |μ| grows with κ: the stiffest mode is the fastest.
-        Damping::Proportional if bound.friction == 0.0 && bound.mass_damping == 0.0 => {
-            let overdamped = 0.25 * damping * damping - stiffness;
-            if overdamped > 0.0 { 0.5 * damping + overdamped.sqrt() } else { frequency }
+    let more = bound.friction + bound.mass_damping;
+    let (oscillation, decay) = match bound.damping {
+        // Every mode has γ = βκ, and |μ| grows with κ: the stiffest mode decays fastest, and none that oscillates is stiffer than the one that just does.
+        Damping::Proportional if more == 0.0 => match damping * damping > 4.0 * stiffness {
+            true => (2.0 * stiffness / damping, fastest_decay(stiffness, damping)),
+            false => (stiffness.sqrt(), 0.0),
+        },
+        // Over all modes within the bounds: √κ if it oscillates, and if not the faster root with the least stiffness that comes with such damping.
+        _ => {
+            let least = if damping > 0.0 { damping / bound.most_ratio } else { 0.0 };
+            (stiffness.sqrt(), fastest_decay(least, damping + more))
         }
-        // Over all modes within the bounds: √κ if it oscillates, at most γ if not.
-        _ => frequency.max(damping + bound.friction + bound.mass_damping),
     };
-    if fastest > 0.0 { STABLE_RADIUS / fastest } else { f64::INFINITY }
+    // Over zero, a limit is infinite: none.
+    (STABLE_RADIUS / oscillation).min(STABLE_DECAY / decay)
 }
