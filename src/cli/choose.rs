@@ -72,6 +72,7 @@ fn row(candidate: &Candidate, found: &Choice) -> Vec<String> {
     let stick = match setting.stick {
         StickRule::InStages => "in stages",
         StickRule::EndOfStep => "at the end",
+        StickRule::Located => "located",
     };
     let mark = if candidate == &found.choice { "* " } else { "  " };
     vec![

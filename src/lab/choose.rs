@@ -98,8 +98,8 @@ pub fn choose(
     let mut candidates = Vec::new();
     for (done, method) in methods.into_iter().enumerate() {
         progress(done, methods.len(), method.name());
-        for stick in [StickRule::InStages, StickRule::EndOfStep] {
-            if stick == StickRule::InStages || stick_matters(problem, method) {
+        for stick in StickRule::ALL {
+            if stick == StickRule::InStages || stick_matters(problem, method, stick) {
                 let steps = steps(problem, method, stick);
                 follow(&judge, method, stick, &steps, search, &mut candidates);
             }
@@ -210,6 +210,7 @@ impl Judge<'_> {
     fn cost(&self, setting: Setting) -> f64 {
         let steps = steps_to(self.problem.duration, setting.dt);
         match setting.method.about().evaluations {
+            Some(_) if setting.stick == StickRule::Located => stepping(self.problem, setting, steps).1 as f64,
             Some(evaluations) => (steps * evaluations) as f64 * self.problem.bodies.len() as f64,
             None => least_seconds(self.problem, setting, steps) / self.evaluation,
         }

@@ -67,12 +67,12 @@ fn step_body<const D: usize>(body: &ProblemBody, setting: Setting, steps: u64) -
     (started.elapsed().as_secs_f64(), run.model.evaluations(0))
 }
 
-/// Whether it makes a difference to a method when friction acts in its steps: over a period, by the bits of all positions.
-pub(super) fn stick_matters(problem: &Problem, method: Method) -> bool {
+/// Whether it makes a difference to a method that friction acts so in its steps, and not in its stages: over a period, by the bits of all positions.
+pub(super) fn stick_matters(problem: &Problem, method: Method, stick: StickRule) -> bool {
     /// No more steps than this are taken to see it, and no fewer than that.
     const MOST_STEPS: f64 = 4096.0;
     const LEAST_STEPS: f64 = 128.0;
-    if problem.bodies.iter().all(|body| body.friction.is_none()) {
+    if problem.bodies.iter().all(|body| body.friction.is_none()) || (stick == StickRule::Located && !method.locates()) {
         return false;
     }
     let period = problem.period.unwrap_or(0.1 * problem.duration);
@@ -85,7 +85,7 @@ pub(super) fn stick_matters(problem: &Problem, method: Method) -> bool {
             let on_axis = body.parts(method, stick).on_axis();
             if on_axis { end_of::<1>(body, setting, steps) } else { end_of::<3>(body, setting, steps) }
         };
-        end(StickRule::InStages) != end(StickRule::EndOfStep)
+        end(StickRule::InStages) != end(stick)
     })
 }
 

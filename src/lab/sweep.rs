@@ -114,13 +114,13 @@ pub(super) const DOCUMENT: Setting =
 fn plan(problem: &Problem, options: &SweepOptions, progress: &mut dyn FnMut(usize, usize, &str)) -> Vec<Setting> {
     let mut plan = Vec::new();
     for method in Method::ALL {
-        for stick in [StickRule::InStages, StickRule::EndOfStep] {
+        for stick in StickRule::ALL {
             let own: Vec<_> = [DOCUMENT, problem.setting]
                 .into_iter()
                 .filter(|own| (own.method, own.stick) == (method, stick))
                 .collect();
             let ladder = ladder(problem, method, stick, options);
-            let is_other = stick == StickRule::InStages || stick_matters(problem, method);
+            let is_other = stick == StickRule::InStages || stick_matters(problem, method, stick);
             let (fits, too_long): (Vec<_>, Vec<_>) =
                 ladder.into_iter().partition(|&dt| work(problem, method, dt) <= options.most_work());
             if let (true, Some(dt)) = (is_other, too_long.first()) {

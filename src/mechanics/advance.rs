@@ -4,7 +4,7 @@ use super::{
     Model, Real, State,
     integrators::{
         DampedVerlet, ExactFlow, ExplicitEuler, ImplicitEuler, ImplicitMidpoint, Integrator, LaneByLane, Leapfrog,
-        Method, RungeKutta2, RungeKutta4, SemiImplicitEuler, StormerVerlet, Xpbd,
+        Located, Method, RungeKutta2, RungeKutta4, SemiImplicitEuler, StickRule, StormerVerlet, Xpbd,
     },
 };
 
@@ -64,7 +64,10 @@ impl<R: Real, const D: usize> pulp::NullaryFnOnce for Advance<'_, R, D> {
 
     #[inline(always)]
     fn call(self) {
+        let located = self.model.stick == StickRule::Located && self.model.coulomb.is_none();
         match self.method {
+            Method::RungeKutta2 if located => self.run_with::<LaneByLane<Located<RungeKutta2<f64, D>, D>, R, D>>(),
+            Method::RungeKutta4 if located => self.run_with::<LaneByLane<Located<RungeKutta4<f64, D>, D>, R, D>>(),
             Method::SemiImplicitEuler => self.run_with::<SemiImplicitEuler<R, D>>(),
             Method::ExplicitEuler => self.run_with::<ExplicitEuler<R, D>>(),
             Method::StormerVerlet => self.run_with::<StormerVerlet<R, D>>(),

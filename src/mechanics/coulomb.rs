@@ -11,7 +11,6 @@ use crate::body::{CoulombFriction, ParticleId};
 use super::{
     BodyParts, Model, Real,
     friction::{Frame, dot, subtract},
-    integrators::StickRule,
     model::SpineRow,
 };
 
@@ -129,7 +128,7 @@ impl<R: Real, const D: usize> Model<R, D> {
     #[inline(always)]
     pub(super) fn finish_coulomb(&mut self, position: &[[R; D]], velocity: &mut [[R; D]]) {
         let Some(coulomb) = &mut self.coulomb else { return };
-        let staged = self.stick == StickRule::InStages && !core::mem::replace(&mut coulomb.fresh, true);
+        let staged = self.stick.asks_in_stages() && !core::mem::replace(&mut coulomb.fresh, true);
         if staged {
             self.stop_coulomb(position, velocity);
         } else {

@@ -57,6 +57,25 @@ impl<R: Real, const D: usize> Model<R, D> {
         frame
     }
 
+    /// How fast S turns, dS/dt = (I − SSᵀ)(V_next − V_previous)/|X_next − X_previous|.
+    #[inline(always)]
+    pub(super) fn spine_turn(&self, row: SpineRow, position: &[[R; D]], velocity: &[[R; D]]) -> [R; D] {
+        let mut turn = [R::splat(0.0); D];
+        // On an axis there is nowhere to turn to.
+        if D > 1 {
+            let [previous, next] = [row.previous as usize, row.next as usize];
+            let (length, spine) = direction(position[previous], position[next]);
+            for axis in 0..D {
+                turn[axis] = velocity[next][axis] - velocity[previous][axis];
+            }
+            let along = dot(turn, spine);
+            subtract(&mut turn, spine, along);
+            let inverse = R::splat(0.0).if_below(length, R::splat(1.0) / length, R::splat(0.0));
+            turn = turn.map(|value| value * inverse);
+        }
+        turn
+    }
+
     /// Lets friction act on all velocities for a whole step: the ratchet first, then drag and grip as exact decays over dt, then Coulomb friction.
     #[inline(always)]
     pub fn apply_friction(&mut self, position: &[[R; D]], velocity: &mut [[R; D]]) {
@@ -86,7 +105,7 @@ impl<R: Real, const D: usize> Model<R, D> {
     #[inline(always)]
     pub fn finish_velocity(&mut self, position: &[[R; D]], velocity: &mut [[R; D]]) {
         match self.stick {
-            StickRule::InStages => self.admit_spine_velocity(position, velocity),
+            StickRule::InStages | StickRule::Located => self.admit_spine_velocity(position, velocity),
             StickRule::EndOfStep => self.apply_spine_friction(position, velocity),
         }
         self.finish_coulomb(position, velocity);
@@ -101,7 +120,7 @@ impl<R: Real, const D: usize> Model<R, D> {
 
     #[inline(always)]
     fn admit_spine_velocity(&self, position: &[[R; D]], velocity: &mut [[R; D]]) {
-        let (Some(friction), StickRule::InStages) = (self.friction, self.stick) else { return };
+        let (Some(friction), true) = (self.friction, self.stick.asks_in_stages()) else { return };
         for &row in &self.spine {
             ratchet(&friction, &self.frame(row, position), &mut velocity[row.particle as usize]);
         }
@@ -116,7 +135,7 @@ impl<R: Real, const D: usize> Model<R, D> {
         acceleration: &[[R; D]],
         velocity: &mut [[R; D]],
     ) {
-        let (Some(friction), StickRule::InStages) = (self.friction, self.stick) else { return };
+        let (Some(friction), true) = (self.friction, self.stick.asks_in_stages()) else { return };
         if !friction.ratchet {
             return;
         }
@@ -124,8 +143,9 @@ impl<R: Real, const D: usize> Model<R, D> {
         for &row in &self.spine {
             let frame = self.frame(row, position);
             let mass = row.particle as usize;
-            let soon = dot(stage_velocity[mass], frame.spine)
-                + dot(acceleration[mass], frame.spine) * R::splat(2.0 * AT_ONCE * self.dt);
+            let push = dot(acceleration[mass], frame.spine)
+                + dot(stage_velocity[mass], self.spine_turn(row, position, stage_velocity));
+            let soon = dot(stage_velocity[mass], frame.spine) + push * R::splat(2.0 * AT_ONCE * self.dt);
             let v = &mut velocity[mass];
             let sliding = dot(*v, frame.spine);
             // What starts to slip is let go; as above, rounding errors must not decide.
@@ -138,7 +158,7 @@ impl<R: Real, const D: usize> Model<R, D> {
     /// to slide back. `velocity` is admitted already. Nothing where friction acts at the end of a step.
     #[inline(always)]
     pub fn admit_acceleration(&mut self, position: &[[R; D]], velocity: &[[R; D]], acceleration: &mut [[R; D]]) {
-        if self.stick == StickRule::InStages {
+        if self.stick.asks_in_stages() {
             self.admit_spine_acceleration(position, velocity, acceleration);
             self.admit_coulomb_acceleration(position, velocity, acceleration);
         }
@@ -160,7 +180,8 @@ impl<R: Real, const D: usize> Model<R, D> {
                 subtract(a, frame.side, dot(v, frame.side) * friction.grip * frame.touches);
             }
             if friction.ratchet {
-                let push = dot(*a, frame.spine);
+                // d(S·v)/dt: what is held stays where the spine leaves it as it turns.
+                let push = dot(*a, frame.spine) + dot(v, self.spine_turn(row, position, velocity));
                 let back = push.if_below(zero, push, zero);
                 // What the push would stop at once is at rest: a speed of rounding errors must not decide.
                 let soon = dot(v, frame.spine) + push * R::splat(self.dt * AT_ONCE);

@@ -48,6 +48,11 @@ impl BodyParts<'_> {
         self.gravity.is_none() && self.ground.is_none() && level(y) && level(z) && still(vy) && still(vz)
     }
 
+    /// Whether it gains from being stepped side by side with bodies of equal topology.
+    pub fn side_by_side(&self) -> bool {
+        self.method.side_by_side() && !(self.stick == StickRule::Located && self.method.locates())
+    }
+
     /// Whether both bodies can be stepped side by side: the same graph of springs, muscles and spine, and the same rules; numbers may differ.
     pub fn same_topology(&self, other: &Self) -> bool {
         fn driven<'a>(muscles: Option<&'a Muscles>) -> impl Iterator<Item = (u32, Wave)> + 'a {

@@ -129,7 +129,7 @@ pub(super) fn step(
 
 /// How many of these bodies are stepped side by side.
 fn side_by_side(alike: &[Item<'_>]) -> usize {
-    if alike.first().is_some_and(|first| first.body().method.side_by_side()) { LANES } else { 1 }
+    if alike.first().is_some_and(|first| first.body().side_by_side()) { LANES } else { 1 }
 }
 
 fn step_group(group: &mut [Item<'_>], timeline: Timeline, steps: Range<u64>) {

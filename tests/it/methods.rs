@@ -116,6 +116,67 @@ fn friction_at_the_end_of_the_step_makes_every_method_first_order() {
 }
 
 #[test]
+fn located_events_keep_the_order() {
+    // Over the first three events: at .368 C slips, at .836 A slips, at 1.008 B sticks.
+    let exact = worm_at(1.4, Worm { method: Method::ExactFlow, ..Worm::EXACT }, StickRule::InStages, 1.4);
+    for method in Method::ALL.into_iter().filter(|method| method.locates()) {
+        let worm = Worm { method, ..Worm::EXACT };
+        let error =
+            |halvings| farthest(&worm_at(1.4, worm, StickRule::Located, 0.05 / f64::from(1 << halvings)), &exact);
+        let errors: Vec<_> = (0..4).map(error).collect();
+        let observed = libm::log2(errors[0] / errors[3]) / 3.0;
+        let order = f64::from(method.about().order);
+        assert!((observed - order).abs() < 0.1, "{method:?}: order {observed} of {errors:?}");
+    }
+}
+
+/// Three masses in a triangle whose spine turns while friction holds some of them, in space.
+fn triangle(method: Method, stick: StickRule, dt: f64) -> Vec<f64> {
+    use wriggle::body::{Muscle, Muscles, SpineFriction, SpringId, Wave};
+    let corners = [DVec3::ZERO, DVec3::new(1.0, 0.0, 0.6), DVec3::new(2.0, 0.0, 0.0)];
+    let body = Particles::new(corners.map(Particle::at)).unwrap();
+    let spring = |a: usize, b: usize| Spring {
+        ends: [ParticleId(a as u32), ParticleId(b as u32)],
+        stiffness: 1.5,
+        damping: 0.4,
+        rest_length: corners[a].distance(corners[b]),
+    };
+    let springs = Springs::new([spring(0, 1), spring(1, 2), spring(0, 2)], &body).unwrap();
+    let muscle = |(i, phase): (u32, f64)| Muscle {
+        spring: SpringId(i),
+        wave: Wave::Sine,
+        amplitude: 0.3,
+        period: 4.0,
+        phase,
+        ramp: 0.0,
+    };
+    let muscles = Muscles::new([(0, 0.0), (1, 0.25), (2, 0.6)].map(muscle), &springs).unwrap();
+    let friction = SpineFriction::new((0..3).map(ParticleId), &body).unwrap();
+    let mut app = stepping_app(dt, (8.0 / dt).round() as u64);
+    let entity = app.world_mut().spawn((body, springs, muscles, friction, method, stick)).id();
+    app.update();
+    let particles = particles(&app, entity);
+    particles.positions().chain(particles.velocities()).flat_map(|v| v.to_array()).collect()
+}
+
+#[test]
+fn located_events_keep_the_order_where_a_held_spine_turns() {
+    let fine = triangle(Method::RungeKutta4, StickRule::Located, 1.0 / 1024.0);
+    // What goes to the same place, by first order, does not locate anything.
+    let other = |dt| farthest(&triangle(Method::RungeKutta2, StickRule::InStages, dt), &fine);
+    let (coarse, half) = (other(1.0 / 512.0), other(1.0 / 1024.0));
+    assert!(half < 1e-3 && (libm::log2(coarse / half) - 1.0).abs() < 0.2, "{coarse:e}, {half:e}");
+    for method in Method::ALL.into_iter().filter(|method| method.locates()) {
+        let error =
+            |halvings| farthest(&triangle(method, StickRule::Located, 0.0625 / f64::from(1 << halvings)), &fine);
+        let errors: Vec<_> = (0..4).map(error).collect();
+        let observed = libm::log2(errors[0] / errors[3]) / 3.0;
+        let order = f64::from(method.about().order);
+        assert!((observed - order).abs() < 0.4, "{method:?}: order {observed} of {errors:?}");
+    }
+}
+
+#[test]
 fn a_mass_that_stops_within_a_step_comes_to_true_rest() {
     // How much of the time each mass of the garden's worm rests, by the exact flow: .225, .275, .343.
     for method in Method::ALL {

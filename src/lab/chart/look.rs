@@ -32,20 +32,19 @@ pub struct Look {
     pub dashes: &'static [f64],
     /// Which marker, from 0 to 11.
     marker: usize,
-    /// Whether markers are hollow: friction acts at the end of the step.
-    hollow: bool,
+    /// When friction acts: markers are hollow where it acts at the end of the step, and have a dot where it is located.
+    stick: StickRule,
 }
 
 impl Look {
     /// The look of a method with a stick rule; that of a method stays the same in every chart.
     pub fn of(method: Method, stick: StickRule) -> Self {
         let i = Method::ALL.iter().position(|&other| other == method).unwrap_or(0);
-        let hollow = stick == StickRule::EndOfStep;
         Self {
             color: COLORS[i % COLORS.len()],
-            dashes: if hollow { DOTS } else { DASHES[i % DASHES.len()] },
+            dashes: if stick == StickRule::EndOfStep { DOTS } else { DASHES[i % DASHES.len()] },
             marker: i % MARKERS,
-            hollow,
+            stick,
         }
     }
 
@@ -65,8 +64,11 @@ impl Look {
         // A thin rim of white keeps markers apart that lie over each other.
         picture.area(scaled(radius + 1.3), [0xff; 3], 1.0);
         picture.area(scaled(radius), self.color, 1.0);
-        if self.hollow {
+        if self.stick != StickRule::InStages {
             picture.area(scaled(radius - 2.0), [0xff; 3], 1.0);
+        }
+        if self.stick == StickRule::Located {
+            picture.area(scaled(radius - 4.0), self.color, 1.0);
         }
     }
 }

@@ -82,6 +82,7 @@ impl Series {
         match self.stick {
             StickRule::InStages => self.method.name().into(),
             StickRule::EndOfStep => format!("{}, friction at end", self.method.name()),
+            StickRule::Located => format!("{}, friction located", self.method.name()),
         }
     }
 

@@ -53,6 +53,7 @@ pub(super) fn all(body: &mut String, chart: &WorkPrecision) {
         let stick = match setting.stick {
             StickRule::InStages => "in stages",
             StickRule::EndOfStep => "at end",
+            StickRule::Located => "located",
         };
         let errors = match errors {
             Some(errors) => {

@@ -12,7 +12,6 @@ use crate::mechanics::{
     Model, State,
     forces::direction,
     friction::{Frame, dot, subtract},
-    integrators::StickRule,
 };
 
 use linear::Linear;
@@ -88,7 +87,7 @@ impl<const D: usize> Implicit<D> {
         }
         self.change.copy_from_slice(&self.velocity);
         model.finish_velocity(&state.position, &mut self.velocity);
-        let ratchet_alone = model.stick == StickRule::InStages && model.coulomb.is_none();
+        let ratchet_alone = model.stick.asks_in_stages() && model.coulomb.is_none();
         let way = if scheme.admitted < 1.0 && ratchet_alone { &self.change } else { &self.velocity };
         for ((x, v), u) in state.position.iter_mut().zip(&state.velocity).zip(way) {
             for axis in 0..D {
@@ -159,7 +158,7 @@ impl<const D: usize> Implicit<D> {
         self.frames.clear();
         self.stuck.clear();
         self.floor.clear();
-        let (Some(friction), StickRule::InStages) = (model.friction, model.stick) else { return };
+        let (Some(friction), true) = (model.friction, model.stick.asks_in_stages()) else { return };
         for (middle, (x, v)) in self.stage.position.iter_mut().zip(state.position.iter().zip(&state.velocity)) {
             *middle = core::array::from_fn(|axis| x[axis] + 0.5 * model.dt * v[axis]);
         }

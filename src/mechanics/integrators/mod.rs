@@ -9,6 +9,7 @@ mod implicit_euler;
 mod implicit_midpoint;
 mod lane_by_lane;
 mod leapfrog;
+mod located;
 mod runge_kutta_2;
 mod runge_kutta_4;
 mod semi_implicit_euler;
@@ -28,6 +29,7 @@ pub use implicit_euler::ImplicitEuler;
 pub use implicit_midpoint::ImplicitMidpoint;
 pub use lane_by_lane::LaneByLane;
 pub use leapfrog::Leapfrog;
+pub use located::{Located, Staged};
 pub use runge_kutta_2::RungeKutta2;
 pub use runge_kutta_4::RungeKutta4;
 pub use semi_implicit_euler::SemiImplicitEuler;
@@ -76,7 +78,7 @@ pub enum Method {
 }
 
 /// When friction acts within a step. Methods in stages ask in every stage unless told otherwise; semi-implicit Euler and XPBD let it act at the end
-/// of the step in any case.
+/// of the step in any case, and the exact flow where it does act.
 #[derive(
     Clone, Component, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Reflect, Serialize, Deserialize,
 )]
@@ -87,6 +89,19 @@ pub enum StickRule {
     InStages,
     /// Stages know no friction; velocities are projected once at the end of the step, as the documents do it. Every method is of order 1 then.
     EndOfStep,
+    /// RK2 and RK4 stop their steps where a mass comes to rest or starts to slip, and keep their order ([`Located`](self::Located)); other methods, and
+    /// all on a body with Coulomb friction, as in stages.
+    Located,
+}
+
+impl StickRule {
+    /// Every rule, in the order in which they are shown.
+    pub const ALL: [Self; 3] = [Self::InStages, Self::EndOfStep, Self::Located];
+
+    /// Whether stages admit only what friction admits.
+    pub(super) fn asks_in_stages(self) -> bool {
+        self != Self::EndOfStep
+    }
 }
 
 /// What is to be known about a method.
@@ -143,6 +158,11 @@ impl Method {
     /// Whether bodies of equal topology gain from being stepped side by side: whether every body takes the same operations.
     pub fn side_by_side(self) -> bool {
         !matches!(self, Self::Leapfrog | Self::ImplicitMidpoint | Self::ImplicitEuler | Self::ExactFlow)
+    }
+
+    /// Whether it can stop its steps where masses stick and slip.
+    pub fn locates(self) -> bool {
+        matches!(self, Self::RungeKutta2 | Self::RungeKutta4)
     }
 
     /// The largest dt that is stable for every body within `bound`; infinite for methods that no step makes unstable.

@@ -8,6 +8,7 @@ use crate::mechanics::{Model, Real, State, stability::StabilityBound};
 use super::{
     About, Integrator,
     explicit_euler::fastest_decay,
+    located::Staged,
     stages::{Stage, Stages},
 };
 
@@ -22,7 +23,9 @@ pub(super) const ABOUT: About = About {
 #[derive(Clone, Debug)]
 pub struct RungeKutta2<R, const D: usize>(Stages<R, D>);
 
-const STAGES: [Stage; 2] = [Stage { at: 0.0, weight: 0.0 }, Stage { at: 0.5, weight: 1.0 }];
+impl<R, const D: usize> Staged for RungeKutta2<R, D> {
+    const STAGES: &'static [Stage] = &[Stage { at: 0.0, weight: 0.0 }, Stage { at: 0.5, weight: 1.0 }];
+}
 
 impl<R: Real, const D: usize> Integrator<R, D> for RungeKutta2<R, D> {
     fn new(particles: usize) -> Self {
@@ -31,7 +34,7 @@ impl<R: Real, const D: usize> Integrator<R, D> for RungeKutta2<R, D> {
 
     #[inline(always)]
     fn step(&mut self, model: &mut Model<R, D>, state: &mut State<R, D>, time: f64) {
-        self.0.step(&STAGES, model, state, time);
+        self.0.step(Self::STAGES, model, state, time);
     }
 }
 

@@ -4,14 +4,12 @@
 //! Stable while |R(λ·dt)| ≤ 1 with R(z) = 1 + z + z²/2 + z³/6 + z⁴/24: without damping up to ω·dt = 2√2. Source: W. Kutta, Z. Math. Phys. 46
 //! (1901) 435.
 
-use crate::mechanics::{
-    Model, Real, State,
-    stability::{Damping, StabilityBound},
-};
+use crate::mechanics::{Model, Real, State, stability::StabilityBound};
 
 use super::{
     About, Integrator,
     explicit_euler::fastest_decay,
+    located::Staged,
     stages::{Stage, Stages},
 };
 
@@ -26,12 +24,14 @@ pub(super) const ABOUT: About = About {
 #[derive(Clone, Debug)]
 pub struct RungeKutta4<R, const D: usize>(Stages<R, D>);
 
-const STAGES: [Stage; 4] = [
-    Stage { at: 0.0, weight: 1.0 / 6.0 },
-    Stage { at: 0.5, weight: 1.0 / 3.0 },
-    Stage { at: 0.5, weight: 1.0 / 3.0 },
-    Stage { at: 1.0, weight: 1.0 / 6.0 },
-];
+impl<R, const D: usize> Staged for RungeKutta4<R, D> {
+    const STAGES: &'static [Stage] = &[
+        Stage { at: 0.0, weight: 1.0 / 6.0 },
+        Stage { at: 0.5, weight: 1.0 / 3.0 },
+        Stage { at: 0.5, weight: 1.0 / 3.0 },
+        Stage { at: 1.0, weight: 1.0 / 6.0 },
+    ];
+}
 
 impl<R: Real, const D: usize> Integrator<R, D> for RungeKutta4<R, D> {
     fn new(particles: usize) -> Self {
@@ -40,7 +40,7 @@ impl<R: Real, const D: usize> Integrator<R, D> for RungeKutta4<R, D> {
 
     #[inline(always)]
     fn step(&mut self, model: &mut Model<R, D>, state: &mut State<R, D>, time: f64) {
-        self.0.step(&STAGES, model, state, time);
+        self.0.step(Self::STAGES, model, state, time);
     }
 }
 
@@ -54,19 +54,11 @@ const STABLE_DECAY: f64 = 2.785;
 pub(super) fn stability_limit(bound: &StabilityBound) -> f64 {
     let stiffness = bound.rates.iter().map(|rates| rates.stiffness).fold(0.0, f64::max);
     let damping = bound.rates.iter().map(|rates| rates.damping).fold(0.0, f64::max);
-    let more = bound.friction + bound.mass_damping;
-    let (oscillation, decay) = match bound.damping {
-        // Every mode has γ = βκ, and |μ| grows with κ: the stiffest mode decays fastest, and none that oscillates is stiffer than the one that just does.
-        Damping::Proportional if more == 0.0 => match damping * damping > 4.0 * stiffness {
-            true => (2.0 * stiffness / damping, fastest_decay(stiffness, damping)),
-            false => (stiffness.sqrt(), 0.0),
-        },
-        // Over all modes within the bounds: √κ if it oscillates, and if not the faster root with the least stiffness that comes with such damping.
-        _ => {
-            let least = if damping > 0.0 { damping / bound.most_ratio } else { 0.0 };
-            (stiffness.sqrt(), fastest_decay(least, damping + more))
-        }
-    };
+    // What oscillates has γ < 2√κ and γ ≥ βκ with the least β, so that √κ < 2/β.
+    let oscillation = stiffness.sqrt().min(2.0 / bound.least_ratio);
+    // What decays has at least the stiffness that comes with such damping: the faster of its two rates is the larger the less it has of that.
+    let least = if damping > 0.0 { damping / bound.most_ratio } else { 0.0 };
+    let decay = fastest_decay(least, damping + bound.friction + bound.mass_damping);
     // Over zero, a limit is infinite: none.
     (STABLE_RADIUS / oscillation).min(STABLE_DECAY / decay)
 }

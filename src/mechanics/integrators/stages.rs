@@ -6,7 +6,8 @@
 use crate::mechanics::{Model, Real, State};
 
 /// A stage of a method: when it is evaluated, in steps, and its weight in the sum.
-pub(super) struct Stage {
+#[derive(Clone, Copy, Debug)]
+pub struct Stage {
     pub(super) at: f64,
     pub(super) weight: f64,
 }
