@@ -2,9 +2,13 @@
 
 mod support;
 
+mod animal;
+mod animals;
+
 mod chart;
 mod cli;
 mod clock;
+mod contact;
 mod crawlers;
 mod determinism;
 mod exact_worm;
@@ -25,5 +29,6 @@ mod picture;
 mod race;
 mod saving;
 mod stability;
+mod strand;
 mod sync;
 mod watch;

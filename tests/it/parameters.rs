@@ -30,7 +30,7 @@ fn component<C: Component + Clone>(world: &mut World) -> C {
 fn every_listed_parameter_can_be_set_and_reads_back() {
     let mut world = world("garden");
     let all = parameters::list(&mut world);
-    assert_eq!(all.len(), 31);
+    assert_eq!(all.len(), 32);
     for Parameter { path, value, range, unit, help, kind } in all {
         assert!(range.contains(&value), "{path}: {value} is outside of {range:?}");
         assert!(!unit.is_empty() && !help.is_empty(), "{path}");
