@@ -1,14 +1,21 @@
-//! Miller's animals on the floor and over the cliff, held to numbers: B, C, S and D of their acceptance tests.
+//! Miller's animals on the floor and over the cliff, held to numbers: B, C, S, D and K3 of their acceptance tests.
 
 use std::sync::Arc;
 
+use bevy::math::DVec3;
 use wriggle::{
     body::{Ground, ParticleId, Surface, Terrain, Wave, WaveDirection},
-    mechanics::{ground_distance, metrics::GaitMetrics},
-    physics::body_parts,
+    mechanics::{
+        ground_distance,
+        metrics::{GaitMetrics, strains},
+    },
+    physics::{Frozen, body_parts},
 };
 
-use crate::animal::{Animal, Ran, strand};
+use crate::{
+    animal::{Animal, Ran, strand},
+    support::stepping_app,
+};
 
 #[track_caller]
 fn near(what: &str, value: f64, expected: f64, part: f64) {
@@ -193,4 +200,52 @@ fn d2_feet_alone_carry_it_against_the_wave() {
     let (there, back) = (forward(WaveDirection::TailToHead), forward(WaveDirection::HeadToTail));
     near("forward", there, 0.44, 0.15);
     near("the other way", back, -there, 0.01);
+}
+
+/// The largest stable step of semi-implicit Euler, (4m/Λ)/(D + √(D² + 4km/Λ)) with the largest eigenvalue Λ of Σuuᵀ over all springs.
+fn largest_step(animal: &Animal) -> f64 {
+    let raw = animal.plan.raw();
+    let lines: Vec<_> = (raw.springs.iter())
+        .map(|spring| {
+            let [a, b] = [spring.ends.0, spring.ends.1].map(|end| end as usize);
+            let place = |i: usize| DVec3::from(raw.particles[i].position);
+            (a, b, (place(b) - place(a)).normalize())
+        })
+        .collect();
+    let mut shape: Vec<_> =
+        (0..raw.particles.len()).map(|i| DVec3::new(1.0, (i % 7) as f64 - 3.0, (i % 5) as f64 - 2.0)).collect();
+    let mut eigenvalue = 0.0;
+    for _ in 0..3000 {
+        let mut image = vec![DVec3::ZERO; shape.len()];
+        for &(a, b, along) in &lines {
+            let stretch = (shape[b] - shape[a]).dot(along);
+            image[b] += along * stretch;
+            image[a] -= along * stretch;
+        }
+        let size = image.iter().map(|v| v.length_squared()).sum::<f64>().sqrt();
+        eigenvalue = size / shape.iter().map(|v| v.length_squared()).sum::<f64>().sqrt();
+        shape = image.into_iter().map(|v| v / size).collect();
+    }
+    let (k, d, m) = (animal.plan.stiffness, animal.plan.damping, animal.plan.mass);
+    4.0 * m / eigenvalue / (d + (d * d + 4.0 * k * m / eigenvalue).sqrt())
+}
+
+#[test]
+fn k3_the_animals_explode_where_the_formula_says() {
+    for (animal, known) in [(Animal::worm(), 0.2357), (Animal::snake(), 0.0716), (Animal::caterpillar(), 0.3885)] {
+        let limit = largest_step(&animal);
+        near("the formula itself", limit, known, 0.005);
+        let explodes = |part: f64| {
+            let animal = animal.clone().with(|animal| animal.dt = part * limit);
+            let mut app = stepping_app(animal.dt, 100);
+            let body = animal.spawn(app.world_mut());
+            (0..60).any(|_| {
+                app.update();
+                let parts = body_parts(app.world().entity(body)).unwrap();
+                app.world().get::<Frozen>(body).is_some() || strains(&parts, 0.0).into_iter().any(|strain| strain > 2.0)
+            })
+        };
+        assert!(!explodes(0.94), "at 94 % of {limit}");
+        assert!(explodes(1.06), "at 106 % of {limit}");
+    }
 }

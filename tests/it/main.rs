@@ -28,6 +28,7 @@ mod parameters;
 mod picture;
 mod race;
 mod saving;
+mod shows;
 mod stability;
 mod strand;
 mod sync;
