@@ -49,9 +49,9 @@ impl<R: Real, const D: usize> Model<R, D> {
             if !depth.any_below(zero) {
                 continue;
             }
-            let (start, start_velocity) = (self.contact.start.position[mass], self.contact.start.velocity[mass]);
+            let start = self.contact.start[mass];
             let (hit_x, hit_v) = if self.contact.bounce > 0.0 {
-                self.bounce(start, start_velocity, *x, *v, depth)
+                self.bounce(start, *x, *v, depth)
             } else {
                 self.stop(start, *x, *v, depth)
             };
@@ -90,21 +90,27 @@ impl<R: Real, const D: usize> Model<R, D> {
     }
 
     /// Contact with bounce: along the normal the mass falls from where the step began with what of gravity points there, y = φ₀ + v₀t − ½gt².
-    fn bounce(&self, start: [R; D], start_v: [R; D], end: [R; D], mut v: [R; D], depth: R) -> ([R; D], [R; D]) {
-        let (zero, dt) = (R::splat(0.0), R::splat(self.dt));
+    ///
+    /// v₀ is that of the parabola through both ends of the step. Methods keep velocities of other moments (semi-implicit Euler, half a step before the
+    /// positions); the difference is left to the mass, so that it rises as it fell.
+    fn bounce(&self, start: [R; D], end: [R; D], mut v: [R; D], depth: R) -> ([R; D], [R; D]) {
+        let (zero, half, dt) = (R::splat(0.0), R::splat(0.5), R::splat(self.dt));
         let (part, _, normal) = self.crossing(start, end, depth);
         let height = self.contact.distance(start).0;
         let height = zero.if_below(height, height, zero);
-        let speed = dot(start_v, normal);
         let weight = self.gravity.map_or(zero, |gravity| gravity * normal[1]);
+        let mean = (depth - height) / dt;
+        let speed = mean + half * weight * dt;
+        let kept = dot(v, normal) - (mean - half * weight * dt);
+        let square = speed * speed + R::splat(2.0) * weight * height;
+        let falling = zero.if_below(square, square, zero).sqrt();
         // Without weight towards the surface the crossing is that of the straight way.
-        let falling = (speed * speed + R::splat(2.0) * weight * height).sqrt();
         let fallen = zero.if_below(weight, (speed + falling) / weight, part * dt);
         let fallen = fallen.if_below(dt, fallen, dt);
         let leaving = R::splat(-self.contact.bounce) * (speed - weight * fallen);
         let left = dt - fallen;
-        let up = leaving * left - R::splat(0.5) * weight * left * left;
-        let up_speed = zero.if_below(up, leaving - weight * left, zero);
+        let up = leaving * left - half * weight * left * left;
+        let up_speed = zero.if_below(up, leaving - weight * left + kept, zero);
         let up = zero.if_below(up, up, zero);
         let mut x = end;
         subtract(&mut x, normal, depth - up);

@@ -24,7 +24,7 @@ pub(super) struct Contact<R, const D: usize> {
     patches: Vec<(Patch, Fading<R>)>,
     pub(super) bounce: f64,
     /// Where the step began; kept only over a terrain.
-    pub(super) start: State<R, D>,
+    pub(super) start: Vec<[R; D]>,
 }
 
 /// How much there is to ask of the ground.
@@ -40,13 +40,7 @@ pub(super) enum ContactKind {
 
 impl<R: Real, const D: usize> Contact<R, D> {
     pub(super) fn new(ground: Option<&Ground>, dt: f64) -> Self {
-        let empty = |kind| Self {
-            kind,
-            surfaces: Vec::new(),
-            patches: Vec::new(),
-            bounce: 0.0,
-            start: State { position: Vec::new(), velocity: Vec::new() },
-        };
+        let empty = |kind| Self { kind, surfaces: Vec::new(), patches: Vec::new(), bounce: 0.0, start: Vec::new() };
         match ground {
             None => empty(ContactKind::None),
             Some(Ground::Flat) => empty(ContactKind::Flat),
@@ -60,13 +54,12 @@ impl<R: Real, const D: usize> Contact<R, D> {
     }
 
     pub(super) fn lane(&self, lane: usize) -> Contact<f64, D> {
-        let state = |rows: &[[R; D]]| rows.iter().map(|row| row.map(|value| value.lane(lane))).collect();
         Contact {
             kind: self.kind,
             surfaces: self.surfaces.clone(),
             patches: self.patches.iter().map(|(patch, grip)| (*patch, grip.lane(lane))).collect(),
             bounce: self.bounce,
-            start: State { position: state(&self.start.position), velocity: state(&self.start.velocity) },
+            start: self.start.iter().map(|row| row.map(|value| value.lane(lane))).collect(),
         }
     }
 
@@ -78,8 +71,7 @@ impl<R: Real, const D: usize> Contact<R, D> {
     #[inline(always)]
     pub(super) fn begin_step(&mut self, state: &State<R, D>) {
         if self.kind == ContactKind::Terrain {
-            self.start.position.clone_from(&state.position);
-            self.start.velocity.clone_from(&state.velocity);
+            self.start.clone_from(&state.position);
         }
     }
 
