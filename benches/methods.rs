@@ -31,6 +31,8 @@ impl Body {
             particles: &self.particles,
             springs: &self.springs,
             muscles: self.muscles.as_ref(),
+            strand: None,
+            waves: None,
             friction: self.friction.as_ref(),
             coulomb: None,
             gravity: None,

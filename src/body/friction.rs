@@ -6,26 +6,50 @@ use super::{BodyError, ParticleId, Particles, Requirement, check};
 
 /// Friction along and across the spine.
 ///
-/// The spine is a list of particles from tail to head. At each of them the spine vector is
-/// S = (X_next − X_previous)/|X_next − X_previous|, one-sided at the ends (Miller 1988). Scales let a mass slide forward along S
-/// and never back. Particles that are not on the spine feel no friction. On a body with a [`Ground`](super::Ground), only
-/// masses in contact with it do.
+/// The spine is a list of sections from tail to head, of one particle each or of as many as a [`Strand`](super::Strand) has in a section. At each of
+/// them the spine vector is S = (X_next − X_previous)/|X_next − X_previous| with the sections' centres X, one-sided at the ends (Miller 1988), and it is that of
+/// all masses of the section. Scales let a mass slide forward along S and never back. Particles that are not on the spine feel no friction. On a body with
+/// a [`Ground`](super::Ground), only masses in contact with it do.
 #[derive(Clone, Component, Debug, PartialEq, Reflect)]
 #[reflect(Component)]
 pub struct SpineFriction {
+    /// Section by section.
     spine: Vec<ParticleId>,
+    /// How many particles a section has.
+    width: usize,
     ratchet: bool,
     drag: f64,
     grip: f64,
+    isotropic: f64,
+    brake: f64,
 }
 
 impl SpineFriction {
-    /// Friction along `spine`, from tail to head, with the ratchet on and neither drag nor grip.
+    /// Friction along `spine`, from tail to head, with the ratchet on and nothing else.
     ///
     /// # Errors
     /// If the spine has fewer than two particles, names one that is not there, or names one twice.
     pub fn new(spine: impl IntoIterator<Item = ParticleId>, particles: &Particles) -> Result<Self, BodyError> {
-        Ok(Self { spine: check_spine(spine, particles)?, ratchet: true, drag: 0.0, grip: 0.0 })
+        let spine = check_spine(spine, particles)?;
+        Ok(Self { spine, width: 1, ratchet: true, drag: 0.0, grip: 0.0, isotropic: 0.0, brake: 0.0 })
+    }
+
+    /// The same along sections of `W` particles, one or more.
+    ///
+    /// # Errors
+    /// If there are fewer than two sections, or they name a particle that is not there or one twice.
+    pub fn along_sections<const W: usize>(
+        sections: impl IntoIterator<Item = [ParticleId; W]>,
+        particles: &Particles,
+    ) -> Result<Self, BodyError> {
+        let spine: Vec<_> = sections.into_iter().flatten().collect();
+        if spine.len() < 2 * W {
+            return Err(BodyError::Inconsistent {
+                path: "spine".into(),
+                problem: "has fewer than two sections; two or more, from tail to head, give it a direction".into(),
+            });
+        }
+        Ok(Self { width: W, ..Self::new(spine, particles)? })
     }
 
     /// Switches the ratchet: with it, S·V < 0 ⇒ V −= S(S·V).
@@ -53,9 +77,39 @@ impl SpineFriction {
         Ok(self)
     }
 
-    /// The particles of the spine from tail to head.
+    /// Sets the isotropic friction μ_iso, the rate at which sliding in any direction dies away (1 a unit of time): along the surface of a ground, and in all
+    /// directions without one. No animal crawls by it alone; it is there for comparison.
+    ///
+    /// # Errors
+    /// If it is negative or not finite.
+    pub fn with_isotropic(mut self, isotropic: f64) -> Result<Self, BodyError> {
+        self.isotropic = check(isotropic, Requirement::NonNegative, || "friction.isotropic".into())?;
+        Ok(self)
+    }
+
+    /// Sets the brake, the least forward drag of a body whose [`TravelingWaves`](super::TravelingWaves) are told to rest (1 a unit of time).
+    /// Without it a snake that stops coasts more than its own length.
+    ///
+    /// # Errors
+    /// If it is negative or not finite.
+    pub fn with_brake(mut self, brake: f64) -> Result<Self, BodyError> {
+        self.brake = check(brake, Requirement::NonNegative, || "friction.brake".into())?;
+        Ok(self)
+    }
+
+    /// The particles of the spine from tail to head, section by section.
     pub fn spine(&self) -> &[ParticleId] {
         &self.spine
+    }
+
+    /// How many particles a section of the spine has.
+    pub fn width(&self) -> usize {
+        self.width
+    }
+
+    /// The sections of the spine from tail to head.
+    pub fn sections(&self) -> impl ExactSizeIterator<Item = &[ParticleId]> {
+        self.spine.chunks(self.width)
     }
 
     /// Whether the ratchet is on.
@@ -71,6 +125,21 @@ impl SpineFriction {
     /// The side grip μ_l.
     pub fn grip(&self) -> f64 {
         self.grip
+    }
+
+    /// The isotropic friction μ_iso.
+    pub fn isotropic(&self) -> f64 {
+        self.isotropic
+    }
+
+    /// The least forward drag while the muscles are told to rest.
+    pub fn brake(&self) -> f64 {
+        self.brake
+    }
+
+    /// The largest of its rates that may act.
+    pub(crate) fn fastest(&self) -> f64 {
+        self.drag.max(self.grip).max(self.isotropic).max(self.brake)
     }
 }
 

@@ -1,7 +1,7 @@
 //! What a body is made of: components of one entity, plain data with its invariants, and no systems.
 //!
-//! A body is **one entity**. [`Particles`], [`Springs`], [`Muscles`], [`SpineFriction`], [`CoulombFriction`], [`Gravity`] and [`Ground`] are its components,
-//! and each holds flat arrays indexed by particle or by spring, so that a whole body fits the first cache and a step
+//! A body is **one entity**. [`Particles`], [`Springs`], [`Muscles`], [`Strand`], [`TravelingWaves`], [`SpineFriction`], [`CoulombFriction`], [`Gravity`] and
+//! [`Ground`] are its components, and each holds flat arrays indexed by particle or by spring, so that a whole body fits the first cache and a step
 //! reads memory in order. A body has only the components that its scene needs: without [`Gravity`] there is no gravity.
 //!
 //! Every component is built by a constructor that refuses what cannot be and says which element was wrong
@@ -10,20 +10,27 @@
 //! Lengths, masses and times are pure numbers in whatever units a scene chooses; nothing here assumes SI.
 
 mod coulomb;
-mod environment;
 mod error;
 mod friction;
+mod gravity;
+mod ground;
 mod mass_damping;
 mod muscles;
 mod particles;
 mod springs;
+mod strand;
+mod waves;
 
 pub use coulomb::{Coefficients, CoulombFriction};
-pub use environment::{Gravity, Ground};
 pub use error::{BodyError, Requirement, check};
 pub use friction::SpineFriction;
+pub use gravity::Gravity;
+pub use ground::{Ground, Patch, Surface, Terrain};
 pub use mass_damping::MassDamping;
 pub(crate) use muscles::Epoch;
 pub use muscles::{LEAST_REST_FRACTION, Muscle, Muscles, Wave};
 pub use particles::{Particle, ParticleId, Particles};
 pub use springs::{Spring, SpringId, Springs};
+pub use strand::{Strand, StrandSpring};
+pub(crate) use waves::Activity;
+pub use waves::{TravelingWave, TravelingWaves, WaveDirection, WaveKind};

@@ -68,7 +68,7 @@ pub(crate) struct Epoch {
 }
 
 impl Epoch {
-    fn cycles_at(self, time: f64, period: f64) -> f64 {
+    pub(super) fn cycles_at(self, time: f64, period: f64) -> f64 {
         self.cycles + (time - self.time) / period
     }
 }

@@ -61,6 +61,7 @@ fn names() -> Vec<Vec<String>> {
             Ok(creature) => match creature.body {
                 Plan::Raw(raw) => format!("{} particles, {} springs", raw.particles.len(), raw.springs.len()),
                 Plan::GardenWorm(_) => "garden worm".into(),
+                Plan::Strand(strand) => format!("strand of {} segments", strand.segments),
             },
             Err(error) => error.to_string(),
         };

@@ -7,7 +7,14 @@ use bevy::math::DVec3;
 use serde::Serialize;
 
 use super::Headless;
-use crate::{body::Particles, mechanics::integrators::Method, physics::Frozen};
+use crate::{
+    body::Particles,
+    mechanics::{
+        integrators::Method,
+        metrics::{Gait, GaitMetrics, SAMPLES_A_CYCLE},
+    },
+    physics::{Frozen, body_parts},
+};
 
 /// FNV-1a 64 over the little-endian bits of all positions, then of all velocities, body by body.
 pub fn state_hash<'a>(bodies: impl Iterator<Item = &'a Particles> + Clone) -> u64 {
@@ -47,6 +54,9 @@ pub(super) struct Report {
     hash: String,
     threads: usize,
     bodies: Vec<BodyReport>,
+    /// What watches the gait of each body, where it has one.
+    #[serde(skip)]
+    gaits: Vec<Option<Gait>>,
 }
 
 #[derive(Debug, Serialize)]
@@ -58,6 +68,9 @@ struct BodyReport {
     center: [f64; 3],
     distance: f64,
     status: &'static str,
+    /// Its gait over its last cycles, where it is a strand with waves.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    gait: Option<GaitMetrics>,
 }
 
 impl Report {
@@ -74,8 +87,10 @@ impl Report {
                 center: start,
                 distance: 0.0,
                 status: "running",
+                gait: None,
             }
         });
+        let gaits = run.bodies().map(|(_, body, _)| Gait::new(&body_parts(body)?));
         Self {
             scene,
             method: method.name(),
@@ -88,6 +103,23 @@ impl Report {
             hash: String::new(),
             threads: 0,
             bodies: bodies.collect(),
+            gaits: gaits.collect(),
+        }
+    }
+
+    /// How many steps there are between two samples of a gait, for the body that asks for the fewest; nothing where no body has a gait.
+    pub(super) fn steps_between_samples(&self, run: &Headless) -> Option<u64> {
+        let shortest = self.gaits.iter().flatten().map(Gait::period).reduce(f64::min)?;
+        Some((shortest / SAMPLES_A_CYCLE as f64 / run.clock().dt()).round().max(1.0) as u64)
+    }
+
+    /// Looks at the gaits of all bodies.
+    pub(super) fn watch(&mut self, run: &Headless) {
+        let (time, dt) = (run.clock().time(), run.clock().dt());
+        for (gait, (_, body, _)) in self.gaits.iter_mut().zip(run.bodies()) {
+            if let (Some(gait), Some(parts)) = (gait, body_parts(body)) {
+                gait.sample(&parts, time, dt);
+            }
         }
     }
 
@@ -98,9 +130,10 @@ impl Report {
         (self.wall_seconds, self.threads) = (wall_seconds, threads);
         (self.force_evaluations, self.spring_updates) = (cost.force_evaluations, cost.spring_updates);
         self.hash = format!("{:016x}", state_hash(run.bodies().map(|(_, _, particles)| particles)));
-        for (report, (_, body, particles)) in self.bodies.iter_mut().zip(run.bodies()) {
+        for ((report, gait), (_, body, particles)) in self.bodies.iter_mut().zip(&self.gaits).zip(run.bodies()) {
             report.center = particles.center().to_array();
             report.distance = DVec3::from(report.start).distance(particles.center());
+            report.gait = gait.as_ref().and_then(Gait::measure);
             report.status = if body.contains::<Frozen>() { "frozen" } else { "running" };
         }
     }
@@ -119,6 +152,9 @@ impl fmt::Display for Report {
                 "\n  {}: {}, {:.4} from its start, at ({x:.4}, {y:.4}, {z:.4})",
                 body.name, body.status, body.distance
             )?;
+            if let Some(gait) = &body.gait {
+                write!(f, ", {:.3} of its length a cycle", gait.body_lengths)?;
+            }
         }
         match self.bodies.len().saturating_sub(SHOWN) {
             0 => Ok(()),

@@ -87,16 +87,20 @@ pub(super) fn run(arguments: &RunArguments) -> Result<Outcome, CliError> {
     if let Some(record) = &mut record {
         record.write(|out| write_record_head(out).and_then(|()| write_record(out, &run)))?;
     }
+    report.watch(&run);
+    let sampling = report.steps_between_samples(&run);
     while done < steps {
-        let now = interval.min(steps - done);
-        let said = run.step(now);
+        let after = |every: u64| (done / every + 1).saturating_mul(every);
+        let next = after(interval).min(sampling.map_or(steps, after)).min(steps);
+        let said = run.step(next - done);
         if !said.is_empty() {
             bar.suspend(|| said.iter().for_each(|line| eprintln!("{line}")));
         }
-        done += now;
+        done = next;
         bar.set_position(done);
+        report.watch(&run);
         if let Some(record) = &mut record
-            && now == interval
+            && done.is_multiple_of(interval)
         {
             record.write(|out| write_record(out, &run))?;
         }

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Deserializer, Serialize, de};
 
-use super::{GardenWorm, Look, MOST_PARTICLES, numbers, parse};
+use super::{GardenWorm, Look, MOST_PARTICLES, StrandPlan, numbers, parse};
 use crate::body::{Ground, MassDamping, Wave};
 
 /// A creature: what `*.creature.ron` holds.
@@ -51,6 +51,8 @@ pub enum Plan {
     Raw(RawBody),
     /// Three masses in a row.
     GardenWorm(GardenWorm),
+    /// A row of cubes with travelling waves.
+    Strand(StrandPlan),
 }
 
 /// Lists of particles and springs.
@@ -140,6 +142,12 @@ pub struct Friction {
     /// Side grip μ_l, zero or more. Left out: 0.
     #[serde(default, deserialize_with = "numbers::non_negative")]
     pub grip: f64,
+    /// Friction in all directions μ_iso, zero or more. Left out: 0.
+    #[serde(default, skip_serializing_if = "is_zero", deserialize_with = "numbers::non_negative")]
+    pub isotropic: f64,
+    /// The least drag while its waves are told to rest, zero or more. Left out: what the creature's kind needs, 0 for a raw body.
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "numbers::optional_non_negative")]
+    pub brake: Option<f64>,
 }
 
 /// Dry friction along and across the spine, as coefficients.
@@ -162,7 +170,7 @@ pub struct Coulomb {
 
 impl Default for Friction {
     fn default() -> Self {
-        Self { ratchet: true, drag: None, grip: 0.0 }
+        Self { ratchet: true, drag: None, grip: 0.0, isotropic: 0.0, brake: None }
     }
 }
 
@@ -172,44 +180,46 @@ impl Creature {
         match &self.body {
             Plan::Raw(raw) => raw.particles.len(),
             Plan::GardenWorm(_) => GardenWorm::PARTICLES,
+            Plan::Strand(strand) => strand.particles(),
         }
     }
 
     /// How it wants to be drawn.
     pub fn look(&self) -> Look {
         match &self.body {
-            Plan::Raw(_) => Look::Plain,
+            Plan::Raw(_) | Plan::Strand(_) => Look::Plain,
             Plan::GardenWorm(_) => Look::GardenWorm,
         }
     }
 }
 
+impl From<Plan> for Creature {
+    /// A creature with what its kind needs and nothing else.
+    fn from(body: Plan) -> Self {
+        Self { version: 1, body, friction: None, coulomb: None, damping: None, ground: None, gravity: None }
+    }
+}
+
 impl From<GardenWorm> for Creature {
     fn from(worm: GardenWorm) -> Self {
-        Self {
-            version: 1,
-            body: Plan::GardenWorm(worm),
-            friction: None,
-            coulomb: None,
-            damping: None,
-            ground: None,
-            gravity: None,
-        }
+        Plan::GardenWorm(worm).into()
     }
 }
 
 impl From<RawBody> for Creature {
     fn from(raw: RawBody) -> Self {
-        Self {
-            version: 1,
-            body: Plan::Raw(raw),
-            friction: None,
-            coulomb: None,
-            damping: None,
-            ground: None,
-            gravity: None,
-        }
+        Plan::Raw(raw).into()
     }
+}
+
+impl From<StrandPlan> for Creature {
+    fn from(strand: StrandPlan) -> Self {
+        Plan::Strand(strand).into()
+    }
+}
+
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
 }
 
 fn one() -> f64 {

@@ -7,10 +7,10 @@ use bevy::{
     math::DVec3,
 };
 
-use super::{Coulomb, Creature, Friction, GardenWorm, Look, Plan, RawBody, RawParticle};
+use super::{Coulomb, Creature, Friction, GardenWorm, Look, Plan, RawBody, RawParticle, StrandPlan};
 use crate::body::{
     BodyError, Coefficients, CoulombFriction, MassDamping, Muscle, Muscles, Particle, ParticleId, Particles,
-    SpineFriction, Spring, SpringId, Springs,
+    SpineFriction, Spring, SpringId, Springs, Strand, TravelingWaves,
 };
 
 /// Where a creature is put, and which way it looks.
@@ -51,6 +51,10 @@ pub struct Body {
     pub springs: Springs,
     /// What drives its springs, if anything does.
     pub muscles: Option<Muscles>,
+    /// The lattice that it is, if it is one.
+    pub strand: Option<Strand>,
+    /// The waves that travel along the lattice, if any do.
+    pub waves: Option<TravelingWaves>,
     /// Friction along its spine, if it feels any.
     pub friction: Option<SpineFriction>,
     /// Dry friction along its spine, if it feels any.
@@ -68,6 +72,12 @@ impl EntityCommand for Body {
         entity.insert((self.particles, self.springs, self.look));
         if let Some(muscles) = self.muscles {
             entity.insert(muscles);
+        }
+        if let Some(strand) = self.strand {
+            entity.insert(strand);
+        }
+        if let Some(waves) = self.waves {
+            entity.insert(waves);
         }
         if let Some(friction) = self.friction {
             entity.insert(friction);
@@ -88,17 +98,37 @@ impl Creature {
     /// Where two places of the blueprint contradict each other: an end that is not a particle, a spine that names a particle twice,
     /// friction without a spine; and where a number is not allowed, which files refuse earlier.
     pub fn body(&self, pose: Pose) -> Result<Body, BodyError> {
-        let (raw, drag) = match &self.body {
-            Plan::Raw(raw) => (Cow::Borrowed(raw), 0.0),
-            Plan::GardenWorm(worm) => (Cow::Owned(worm.raw()), GardenWorm::DRAG),
+        let (raw, kind) = match &self.body {
+            Plan::Raw(raw) => {
+                (Cow::Borrowed(raw), Friction { drag: Some(0.0), brake: Some(0.0), ..Friction::default() })
+            }
+            Plan::GardenWorm(worm) => {
+                let drag = Some(GardenWorm::DRAG);
+                (Cow::Owned(worm.raw()), Friction { drag, brake: Some(0.0), ..Friction::default() })
+            }
+            Plan::Strand(strand) => {
+                let brake = Some(StrandPlan::BRAKE);
+                (Cow::Owned(strand.raw()), Friction { drag: Some(0.0), brake, ..Friction::default() })
+            }
         };
         let particles = particles(&raw, pose)?;
         let springs = springs(&raw, &particles)?;
         let muscles = muscles(&raw, &springs)?;
-        let friction = match (&self.body, self.friction) {
-            (Plan::Raw(_), None) => None,
-            (_, friction) => Some(spine_friction(&raw, friction.unwrap_or_default(), drag, &particles)?),
+        let (strand, waves) = match &self.body {
+            Plan::Strand(plan) => (Some(plan.strand(&springs)?), Some(plan.waves()?)),
+            Plan::Raw(_) | Plan::GardenWorm(_) => (None, None),
         };
+        let own = self.friction.unwrap_or_default();
+        let own = Friction { drag: own.drag.or(kind.drag), brake: own.brake.or(kind.brake), ..own };
+        let friction = match (&self.body, strand) {
+            (_, Some(strand)) => Some(SpineFriction::along_sections(
+                (0..strand.sections()).map(|section| strand.section(section)),
+                &particles,
+            )?),
+            (Plan::Raw(_), None) if self.friction.is_none() => None,
+            _ => Some(SpineFriction::new(spine(&raw, "friction")?, &particles)?),
+        };
+        let friction = friction.map(|friction| with_rates(friction, own)).transpose()?;
         if friction.is_none() && !raw.spine.is_empty() {
             // The spine is checked even where nothing uses it, so that a mistake in it does not wait for the friction.
             SpineFriction::new(raw.spine.iter().copied().map(ParticleId), &particles)?;
@@ -109,7 +139,7 @@ impl Creature {
             Some(MassDamping::Rate(rate)) => Some(MassDamping::rate(rate)?),
             Some(MassDamping::PerStep(part)) => Some(MassDamping::per_step(part)?),
         };
-        Ok(Body { particles, springs, muscles, friction, coulomb, damping, look: self.look() })
+        Ok(Body { particles, springs, muscles, strand, waves, friction, coulomb, damping, look: self.look() })
     }
 }
 
@@ -166,16 +196,13 @@ fn muscles(raw: &RawBody, springs: &Springs) -> Result<Option<Muscles>, BodyErro
     Ok(Some(Muscles::new(muscles, springs)?).filter(|muscles| !muscles.is_empty()))
 }
 
-fn spine_friction(
-    raw: &RawBody,
-    friction: Friction,
-    drag: f64,
-    particles: &Particles,
-) -> Result<SpineFriction, BodyError> {
-    SpineFriction::new(spine(raw, "friction")?, particles)?
+fn with_rates(spine: SpineFriction, friction: Friction) -> Result<SpineFriction, BodyError> {
+    spine
         .with_ratchet(friction.ratchet)
-        .with_drag(friction.drag.unwrap_or(drag))?
-        .with_grip(friction.grip)
+        .with_drag(friction.drag.unwrap_or_default())?
+        .with_grip(friction.grip)?
+        .with_isotropic(friction.isotropic)?
+        .with_brake(friction.brake.unwrap_or_default())
 }
 
 fn coulomb_friction(raw: &RawBody, coulomb: Coulomb, particles: &Particles) -> Result<CoulombFriction, BodyError> {
@@ -193,7 +220,9 @@ fn spine<'a>(raw: &'a RawBody, field: &str) -> Result<impl Iterator<Item = Parti
     if raw.spine.is_empty() {
         return Err(BodyError::Inconsistent {
             path: field.into(),
-            problem: "works along a spine, and this body has none; give `spine: [tail, …, head]` in its body".into(),
+            problem:
+                "works along a spine of particles, and this body has none; give `spine: [tail, …, head]` in a raw body"
+                    .into(),
         });
     }
     Ok(raw.spine.iter().copied().map(ParticleId))

@@ -1,6 +1,6 @@
 //! Creatures as data: a blueprint, read from a file, becomes the components of a body. Needs no Bevy schedule.
 //!
-//! A [`Creature`] is a kind with parameters ([`GardenWorm`]) or raw lists of particles and springs ([`RawBody`]). [`Creature::body`]
+//! A [`Creature`] is a kind with parameters ([`GardenWorm`], [`StrandPlan`]) or raw lists of particles and springs ([`RawBody`]). [`Creature::body`]
 //! places it in the world and gives a [`Body`], which is put on an entity as a command:
 //!
 //! ```
@@ -21,6 +21,7 @@ pub mod library;
 mod look;
 pub(crate) mod numbers;
 mod parse;
+mod strand;
 
 pub use blueprint::{Coulomb, Creature, Friction, Plan, RawBody, RawMuscle, RawParticle, RawSpring};
 pub use build::{Body, Pose};
@@ -28,6 +29,7 @@ pub use error::FileError;
 pub use garden_worm::GardenWorm;
 pub use look::Look;
 pub(crate) use parse::{CurrentVersion, options, parse, version};
+pub use strand::{StrandPlan, WavePlan};
 
 /// The most particles that the creatures of a scene may have together. Files that ask for more are refused before memory is taken.
 pub const MOST_PARTICLES: usize = 4_000_000;

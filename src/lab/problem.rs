@@ -3,7 +3,10 @@
 use bevy::{ecs::prelude::*, prelude::Name};
 
 use crate::{
-    body::{CoulombFriction, Gravity, Ground, MassDamping, Muscles, Particles, SpineFriction, Springs},
+    body::{
+        CoulombFriction, Gravity, Ground, MassDamping, Muscles, Particles, SpineFriction, Springs, Strand,
+        TravelingWaves,
+    },
     creatures::FileError,
     mechanics::{
         BodyParts,
@@ -33,6 +36,10 @@ pub struct ProblemBody {
     pub springs: Springs,
     /// Its muscles, if it has any.
     pub muscles: Option<Muscles>,
+    /// The lattice that it is, if it is one.
+    pub strand: Option<Strand>,
+    /// The waves that travel along the lattice, if any do.
+    pub waves: Option<TravelingWaves>,
     /// Its friction, if it has any.
     pub friction: Option<SpineFriction>,
     /// Its Coulomb friction, if it feels any.
@@ -61,11 +68,13 @@ impl ProblemBody {
             particles: entity.get::<Particles>()?.clone(),
             springs: entity.get::<Springs>()?.clone(),
             muscles: entity.get::<Muscles>().filter(|muscles| !muscles.is_empty()).cloned(),
+            strand: entity.get::<Strand>().copied(),
+            waves: entity.get::<TravelingWaves>().cloned(),
             friction: entity.get::<SpineFriction>().cloned(),
             coulomb: entity.get::<CoulombFriction>().cloned(),
             // Gravity of zero is none: it must not cost a body its axis.
             gravity: entity.get::<Gravity>().copied().filter(|gravity| gravity.acceleration() > 0.0),
-            ground: entity.get::<Ground>().copied(),
+            ground: entity.get::<Ground>().cloned(),
             mass_damping: entity.get::<MassDamping>().copied(),
         })
     }
@@ -76,10 +85,12 @@ impl ProblemBody {
             particles: &self.particles,
             springs: &self.springs,
             muscles: self.muscles.as_ref(),
+            strand: self.strand,
+            waves: self.waves.as_ref(),
             friction: self.friction.as_ref(),
             coulomb: self.coulomb.as_ref(),
             gravity: self.gravity,
-            ground: self.ground,
+            ground: self.ground.as_ref(),
             mass_damping: self.mass_damping,
             method,
             stick,
@@ -118,12 +129,14 @@ impl ProblemBody {
         spine.iter().for_each(|particle| hash.whole(u64::from(particle.0)));
         if let Some(friction) = &self.friction {
             hash.whole(u64::from(friction.ratchet()));
-            hash.numbers(&[friction.drag(), friction.grip()]);
+            hash.numbers(&[friction.drag(), friction.grip(), friction.isotropic()]);
         }
         hash.number(self.gravity.map_or(0.0, Gravity::acceleration));
         // No reference knows Coulomb friction; it must not be taken for a body without it.
         hash.whole(u64::from(self.coulomb.is_some()));
-        hash.whole(self.ground.map_or(0, |ground| 1 + ground as u64));
+        // Nor does it know strands and grounds.
+        hash.whole(u64::from(self.strand.is_some()));
+        hash.whole(u64::from(self.ground.is_some()));
         hash.number(self.mass_damping.map_or(0.0, |damping| damping.rate_at(1.0)));
     }
 }
@@ -188,7 +201,8 @@ impl Problem {
 
     fn set_duration(&mut self) {
         let muscles = self.bodies.iter().filter_map(|body| body.muscles.as_ref()).flat_map(Muscles::iter);
-        self.period = muscles.map(|muscle| muscle.period).reduce(f64::max);
+        let waves = self.bodies.iter().filter_map(|body| body.waves.as_ref()?.longest_period());
+        self.period = muscles.map(|muscle| muscle.period).chain(waves).reduce(f64::max);
         self.duration = self.period.map_or(WITHOUT_MUSCLES, |period| CYCLES * period);
     }
 

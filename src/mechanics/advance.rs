@@ -54,6 +54,7 @@ impl<R: Real, const D: usize> Advance<'_, R, D> {
     fn run_with<I: Integrator<R, D>>(self) {
         let mut integrator = I::new(self.state.position.len());
         for step in self.first..self.first + self.steps {
+            self.model.begin_step(self.state);
             integrator.step(self.model, self.state, self.timeline.time_at(step));
         }
     }

@@ -10,6 +10,7 @@ use crate::body::{CoulombFriction, ParticleId};
 
 use super::{
     BodyParts, Model, Real,
+    forces::direction,
     friction::{Frame, dot, subtract},
     model::SpineRow,
 };
@@ -103,11 +104,12 @@ impl<R: Real> CoulombRow<R> {
 impl<R: Real, const D: usize> Model<R, D> {
     #[inline(always)]
     fn coulomb_frame(&self, row: SpineRow, position: &[[R; D]]) -> Frame<R, D> {
-        if row.previous != row.next {
-            return self.frame(row, position);
-        }
         let mut along = [R::splat(0.0); D];
-        along[0] = R::splat(1.0);
+        if row.previous == row.next {
+            along[0] = R::splat(1.0);
+        } else {
+            along = direction(position[row.previous as usize], position[row.next as usize]).1;
+        }
         self.frame_along(row.particle, along, position)
     }
 

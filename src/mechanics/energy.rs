@@ -2,9 +2,9 @@
 
 use bevy::math::DVec3;
 
-use crate::body::{Particles, SpringId};
+use crate::body::Particles;
 
-use super::{BodyParts, rest_length};
+use super::{BodyParts, rest_lengths};
 
 /// Kinetic energy, ½ Σ m v².
 pub fn kinetic_energy(particles: &Particles) -> f64 {
@@ -14,12 +14,12 @@ pub fn kinetic_energy(particles: &Particles) -> f64 {
 /// Elastic energy at `time`, ½ Σ k (l − L)².
 pub fn elastic_energy(body: &BodyParts<'_>, time: f64) -> f64 {
     let positions: Vec<_> = body.particles.positions().collect();
-    let energy = |(i, spring): (usize, crate::body::Spring)| {
+    let energy = |(spring, rest): (crate::body::Spring, f64)| {
         let [a, b] = spring.ends.map(|end| positions[end.index()]);
-        let stretch = a.distance(b) - rest_length(body.springs, body.muscles, SpringId(i as u32), time);
+        let stretch = a.distance(b) - rest;
         0.5 * spring.stiffness * stretch * stretch
     };
-    body.springs.iter().enumerate().map(energy).sum()
+    body.springs.iter().zip(rest_lengths(body, time)).map(energy).sum()
 }
 
 /// Momentum, Σ m v.

@@ -3,7 +3,7 @@
 use crate::body::{LEAST_REST_FRACTION, Muscles, SpringId, Springs, Wave};
 
 use super::{
-    Model, Real,
+    BodyParts, Model, Real, State,
     model::MuscleRow,
     wave::{sin_cycles, square_cycles},
 };
@@ -30,11 +30,15 @@ fn driven<R: Real>(rest_length: R, drive: R) -> R {
 }
 
 impl<R: Real, const D: usize> Model<R, D> {
-    /// Drives all rest lengths to `time`.
+    /// Drives all rest lengths to `time`. Those of a strand also depend on where it is.
     #[inline(always)]
-    pub(super) fn drive_muscles(&mut self, time: f64) {
-        for (rest, spring) in self.rest.iter_mut().zip(&self.springs) {
-            *rest = spring.rest_length;
+    pub(super) fn drive_muscles(&mut self, time: f64, position: &[[R; D]]) {
+        if self.strand.is_some() {
+            self.drive_strand(time, position);
+        } else {
+            for (rest, spring) in self.rest.iter_mut().zip(&self.springs) {
+                *rest = spring.rest_length;
+            }
         }
         for muscle in &self.muscles {
             let rest = &mut self.rest[muscle.spring as usize];
@@ -62,7 +66,11 @@ impl<R: Real, const D: usize> Model<R, D> {
     pub fn forces(&mut self, time: f64, position: &[[R; D]], velocity: &[[R; D]], acceleration: &mut [[R; D]]) {
         let zero = R::splat(0.0);
         self.evaluations += R::splat(1.0);
-        self.drive_muscles(time);
+        self.drive_muscles(time, position);
+        if self.strand.is_some() {
+            self.strand_forces(position, velocity, acceleration);
+            return;
+        }
         for row in acceleration.iter_mut() {
             *row = [zero; D];
         }
@@ -120,4 +128,14 @@ pub fn rest_length(springs: &Springs, muscles: Option<&Muscles>, spring: SpringI
         .flat_map(|muscles| muscles.iter().zip(muscles.epochs()))
         .find(|(muscle, _)| muscle.spring == spring)
         .map_or(rest, |(muscle, &epoch)| driven(rest, drive(&MuscleRow::of(muscle, epoch), time)))
+}
+
+/// The rest lengths of all springs of a body at `time`, as its muscles and waves drive them where it is.
+pub fn rest_lengths(body: &BodyParts<'_>, time: f64) -> Vec<f64> {
+    // Rest lengths do not depend on the step.
+    let mut model = Model::<f64, 3>::new(body, [], 1.0);
+    let mut state = State::new(body.particles.len());
+    state.set_lane(0, body.particles);
+    model.drive_muscles(time, &state.position);
+    model.rest
 }

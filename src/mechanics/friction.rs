@@ -1,6 +1,7 @@
 //! Friction along and across the spine; `coulomb` has the dry kind.
 //!
-//! `ratchet`: s = S·v; if s < 0, v −= s S (Miller 1988). `drag` and `grip` are rates at which forward and sideways sliding die away.
+//! `ratchet`: s = S·v; if s < 0, v −= s S (Miller 1988). `drag` and `grip` are rates at which forward and sideways sliding die away, `isotropic` one for
+//! sliding in any direction.
 //! A method either lets them act once at the end of its step ([`Model::apply_friction`]), as the documents do, or
 //! asks in each of its stages what friction admits ([`Model::admit_velocity`], [`Model::admit_acceleration`]): there, a mass that
 //! does not slide forward and is pushed back stays where it is. [`StickRule`] says which.
@@ -10,8 +11,9 @@ use crate::body::Ground;
 use super::{
     Model, Real,
     forces::direction,
+    ground::ContactKind,
     integrators::StickRule,
-    model::{FrictionRow, SpineRow},
+    model::{Fading, FrictionRow, Sections, SpineRow},
 };
 
 /// A mass that the push back brings to rest within this fraction of a step is at rest.
@@ -26,6 +28,8 @@ pub(super) struct Frame<R, const D: usize> {
     pub(super) forward: [R; D],
     /// Sideways, q = n × S_t with the surface's normal n; without a ground, n points up.
     pub(super) side: [R; D],
+    /// The surface's normal n; up without a ground.
+    pub(super) normal: [R; D],
     /// 1 where the mass touches the ground or there is none, else 0.
     pub(super) touches: R,
 }
@@ -33,18 +37,43 @@ pub(super) struct Frame<R, const D: usize> {
 impl<R: Real, const D: usize> Model<R, D> {
     #[inline(always)]
     pub(super) fn frame(&self, row: SpineRow, position: &[[R; D]]) -> Frame<R, D> {
-        let spine = direction(position[row.previous as usize], position[row.next as usize]).1;
-        self.frame_along(row.particle, spine, position)
+        self.frame_along(row.particle, self.spine_vector(row, position), position)
+    }
+
+    /// S, from the sections before and behind.
+    #[inline(always)]
+    fn spine_vector(&self, row: SpineRow, position: &[[R; D]]) -> [R; D] {
+        direction([R::splat(0.0); D], self.span(row, position)).1
+    }
+
+    /// What lies between the sections before and behind: X_next − X_previous or V_next − V_previous, times the number of particles in a section.
+    #[inline(always)]
+    fn span(&self, row: SpineRow, columns: &[[R; D]]) -> [R; D] {
+        match &self.sections {
+            None => {
+                let (previous, next) = (columns[row.previous as usize], columns[row.next as usize]);
+                core::array::from_fn(|axis| next[axis] - previous[axis])
+            }
+            Some(sections) => sections.span(row, columns),
+        }
     }
 
     /// The frame of a particle where the spine has this direction.
     #[inline(always)]
     pub(super) fn frame_along(&self, particle: u32, spine: [R; D], position: &[[R; D]]) -> Frame<R, D> {
+        let mut frame = self.level_frame(spine);
+        self.lay(&mut frame, particle, position);
+        frame
+    }
+
+    /// The frame of a mass that stands on level ground.
+    #[inline(always)]
+    fn level_frame(&self, spine: [R; D]) -> Frame<R, D> {
         let (zero, one) = (R::splat(0.0), R::splat(1.0));
-        let mut frame = Frame { spine, forward: spine, side: [zero; D], touches: one };
+        let mut frame = Frame { spine, forward: spine, side: [zero; D], normal: [zero; D], touches: one };
         if D == 3 {
-            if let Some(Ground::Flat) = self.ground {
-                frame.touches = position[particle as usize][1].if_below(R::splat(Ground::CONTACT_DISTANCE), one, zero);
+            frame.normal[1] = one;
+            if self.contact.kind == ContactKind::Flat {
                 let mut level = spine;
                 level[1] = zero;
                 frame.forward = direction([zero; D], level).1;
@@ -57,26 +86,69 @@ impl<R: Real, const D: usize> Model<R, D> {
         frame
     }
 
-    /// How fast S turns, dS/dt = (I − SSᵀ)(V_next − V_previous)/|X_next − X_previous|.
+    /// How fast S turns: dS/dt = (I − SSᵀ)(V_next − V_previous)/|X_next − X_previous|.
     #[inline(always)]
     pub(super) fn spine_turn(&self, row: SpineRow, position: &[[R; D]], velocity: &[[R; D]]) -> [R; D] {
-        let mut turn = [R::splat(0.0); D];
         // On an axis there is nowhere to turn to.
-        if D > 1 {
-            let [previous, next] = [row.previous as usize, row.next as usize];
-            let (length, spine) = direction(position[previous], position[next]);
-            for axis in 0..D {
-                turn[axis] = velocity[next][axis] - velocity[previous][axis];
-            }
-            let along = dot(turn, spine);
-            subtract(&mut turn, spine, along);
-            let inverse = R::splat(0.0).if_below(length, R::splat(1.0) / length, R::splat(0.0));
-            turn = turn.map(|value| value * inverse);
+        if D == 1 {
+            return [R::splat(0.0); D];
         }
-        turn
+        let (length, spine) = direction([R::splat(0.0); D], self.span(row, position));
+        let mut turn = self.span(row, velocity);
+        let along = dot(turn, spine);
+        subtract(&mut turn, spine, along);
+        let inverse = R::splat(0.0).if_below(length, R::splat(1.0) / length, R::splat(0.0));
+        turn.map(|value| value * inverse)
     }
 
-    /// Lets friction act on all velocities for a whole step: the ratchet first, then drag and grip as exact decays over dt, then Coulomb friction.
+    /// Lays the frame of a level ground where a mass is.
+    #[inline(always)]
+    fn lay(&self, frame: &mut Frame<R, D>, particle: u32, position: &[[R; D]]) {
+        let (zero, one) = (R::splat(0.0), R::splat(1.0));
+        let x = position[particle as usize];
+        let near = R::splat(Ground::CONTACT_DISTANCE);
+        match self.contact.kind {
+            _ if D != 3 => {}
+            ContactKind::None => {}
+            ContactKind::Flat => frame.touches = x[1].if_below(near, one, zero),
+            ContactKind::Terrain => self.lay_on_terrain(frame, x),
+        }
+    }
+
+    // On its own, as are the sections' spine vectors: methods ask for frames in many places and are compiled for many kinds of bodies and processors.
+    #[inline(never)]
+    fn lay_on_terrain(&self, frame: &mut Frame<R, D>, x: [R; D]) {
+        let (zero, one) = (R::splat(0.0), R::splat(1.0));
+        let (distance, n) = self.contact.distance(x);
+        frame.touches = distance.if_below(R::splat(Ground::CONTACT_DISTANCE), one, zero);
+        frame.normal = n;
+        let mut along = frame.spine;
+        subtract(&mut along, n, dot(frame.spine, n));
+        let f = direction([zero; D], along).1;
+        frame.forward = f;
+        frame.side[0] = n[1] * f[2] - n[2] * f[1];
+        frame.side[1] = n[2] * f[0] - n[0] * f[2];
+        frame.side[2] = n[0] * f[1] - n[1] * f[0];
+    }
+
+    /// The side grip where a mass stands.
+    #[inline(always)]
+    pub(super) fn grip_at(&self, friction: &FrictionRow<R>, x: [R; D]) -> Fading<R> {
+        if D == 3 && self.contact.has_patches() { self.contact.grip(x, friction.grip) } else { friction.grip }
+    }
+
+    /// What of a velocity isotropic friction works against: what lies in the surface, and all of it without a ground.
+    #[inline(always)]
+    pub(super) fn sliding(&self, frame: &Frame<R, D>, v: [R; D]) -> [R; D] {
+        let mut sliding = v;
+        if self.contact.kind != ContactKind::None {
+            subtract(&mut sliding, frame.normal, dot(v, frame.normal));
+        }
+        sliding
+    }
+
+    /// Lets friction act on all velocities for a whole step: the ratchet first, then drag, grip and isotropic friction as
+    /// exact decays over dt, then Coulomb friction.
     #[inline(always)]
     pub fn apply_friction(&mut self, position: &[[R; D]], velocity: &mut [[R; D]]) {
         self.apply_spine_friction(position, velocity);
@@ -86,18 +158,33 @@ impl<R: Real, const D: usize> Model<R, D> {
     #[inline(always)]
     fn apply_spine_friction(&self, position: &[[R; D]], velocity: &mut [[R; D]]) {
         let Some(friction) = self.friction else { return };
-        for &row in &self.spine {
-            let frame = self.frame(row, position);
-            let v = &mut velocity[row.particle as usize];
-            ratchet(&friction, &frame, v);
-            if friction.has_drag {
-                let zero = R::splat(0.0);
-                let sliding = dot(*v, frame.forward);
-                subtract(v, frame.forward, zero.if_below(sliding, sliding, zero) * friction.drag_loss * frame.touches);
+        let width = self.sections.as_ref().map_or(1, |sections| sections.width);
+        for section in self.spine.chunks(width) {
+            // The masses of a section share its spine vector.
+            let mut frame = self.level_frame(self.spine_vector(section[0], position));
+            for row in section {
+                self.lay(&mut frame, row.particle, position);
+                self.slow(&friction, &frame, position[row.particle as usize], &mut velocity[row.particle as usize]);
             }
-            if friction.has_grip && D == 3 {
-                subtract(v, frame.side, dot(*v, frame.side) * friction.grip_loss * frame.touches);
-            }
+        }
+    }
+
+    /// What spine friction leaves of a velocity over a step.
+    #[inline(always)]
+    fn slow(&self, friction: &FrictionRow<R>, frame: &Frame<R, D>, x: [R; D], v: &mut [R; D]) {
+        ratchet(friction, frame, v);
+        if friction.has_drag {
+            let zero = R::splat(0.0);
+            let sliding = dot(*v, frame.forward);
+            subtract(v, frame.forward, zero.if_below(sliding, sliding, zero) * friction.drag_loss * frame.touches);
+        }
+        if friction.has_grip && D == 3 {
+            let loss = self.grip_at(friction, x).loss;
+            subtract(v, frame.side, dot(*v, frame.side) * loss * frame.touches);
+        }
+        if friction.has_isotropic {
+            let sliding = self.sliding(frame, *v);
+            subtract(v, sliding, friction.isotropic.loss * frame.touches);
         }
     }
 
@@ -177,7 +264,11 @@ impl<R: Real, const D: usize> Model<R, D> {
                 subtract(a, frame.forward, zero.if_below(sliding, sliding, zero) * friction.drag * frame.touches);
             }
             if friction.has_grip && D == 3 {
-                subtract(a, frame.side, dot(v, frame.side) * friction.grip * frame.touches);
+                let rate = self.grip_at(&friction, position[row.particle as usize]).rate;
+                subtract(a, frame.side, dot(v, frame.side) * rate * frame.touches);
+            }
+            if friction.has_isotropic {
+                subtract(a, self.sliding(&frame, v), friction.isotropic.rate * frame.touches);
             }
             if friction.ratchet {
                 // d(S·v)/dt: what is held stays where the spine leaves it as it turns.
@@ -189,6 +280,24 @@ impl<R: Real, const D: usize> Model<R, D> {
                 subtract(a, frame.spine, held * frame.touches);
             }
         }
+    }
+}
+
+impl Sections {
+    #[inline(never)]
+    fn span<R: Real, const D: usize>(&self, row: SpineRow, columns: &[[R; D]]) -> [R; D] {
+        let sum = |section: u32| {
+            let first = section as usize * self.width;
+            let mut sum = [R::splat(0.0); D];
+            for &particle in &self.particles[first..first + self.width] {
+                for axis in 0..D {
+                    sum[axis] += columns[particle as usize][axis];
+                }
+            }
+            sum
+        };
+        let (previous, next) = (sum(row.previous), sum(row.next));
+        core::array::from_fn(|axis| next[axis] - previous[axis])
     }
 }
 

@@ -2,14 +2,16 @@
 
 use crate::body::{
     CoulombFriction, Epoch, Gravity, Ground, MassDamping, Muscle, Muscles, ParticleId, Particles, SpineFriction,
-    Spring, Springs, Wave,
+    Spring, Springs, Strand, TravelingWaves, Wave, WaveKind,
 };
 
 use super::{
     Real,
     coulomb::Coulomb,
     forces::direction,
+    ground::Contact,
     integrators::{Method, StickRule},
+    strand::StrandRows,
 };
 
 /// Components of one body, borrowed.
@@ -21,6 +23,10 @@ pub struct BodyParts<'a> {
     pub springs: &'a Springs,
     /// Its muscles, if it has any.
     pub muscles: Option<&'a Muscles>,
+    /// The lattice that it is, if it is one.
+    pub strand: Option<Strand>,
+    /// The waves that travel along the lattice, if any do.
+    pub waves: Option<&'a TravelingWaves>,
     /// Its friction, if it has any.
     pub friction: Option<&'a SpineFriction>,
     /// Its dry friction, if it has any.
@@ -28,7 +34,7 @@ pub struct BodyParts<'a> {
     /// Its gravity, if it has any.
     pub gravity: Option<Gravity>,
     /// The ground that it stands on, if any.
-    pub ground: Option<Ground>,
+    pub ground: Option<&'a Ground>,
     /// Its damping by what surrounds it, if any.
     pub mass_damping: Option<MassDamping>,
     /// The method that steps it.
@@ -58,13 +64,19 @@ impl BodyParts<'_> {
         fn driven<'a>(muscles: Option<&'a Muscles>) -> impl Iterator<Item = (u32, Wave)> + 'a {
             muscles.into_iter().flat_map(Muscles::iter).map(|muscle| (muscle.spring.0, muscle.wave))
         }
-        fn rule(friction: Option<&SpineFriction>) -> Option<(bool, &[ParticleId])> {
-            friction.map(|friction| (friction.ratchet(), friction.spine()))
+        fn traveling<'a>(waves: Option<&'a TravelingWaves>) -> impl Iterator<Item = (WaveKind, Wave)> + 'a {
+            waves.into_iter().flat_map(TravelingWaves::iter).map(|wave| (wave.kind, wave.form))
+        }
+        fn rule(friction: Option<&SpineFriction>) -> Option<(bool, usize, &[ParticleId])> {
+            friction.map(|friction| (friction.ratchet(), friction.width(), friction.spine()))
         }
         (self.method, self.stick) == (other.method, other.stick)
             && self.particles.len() == other.particles.len()
             && self.springs.ends() == other.springs.ends()
             && driven(self.muscles).eq(driven(other.muscles))
+            && self.strand == other.strand
+            && self.waves.is_some() == other.waves.is_some()
+            && traveling(self.waves).eq(traveling(other.waves))
             && rule(self.friction) == rule(other.friction)
             && self.coulomb.map(CoulombFriction::spine) == other.coulomb.map(CoulombFriction::spine)
             && self.ground == other.ground
@@ -144,16 +156,18 @@ impl MuscleRow<f64> {
     }
 }
 
-/// A particle of the spine with its neighbours there; at the ends one of them is the particle itself.
+/// A particle of the spine with the sections before and behind its own; at the ends one of them is its own.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SpineRow {
     pub(super) particle: u32,
+    /// The number of the section or, where a section is a single particle, that particle.
     pub(super) previous: u32,
+    /// As `previous`.
     pub(super) next: u32,
 }
 
 impl SpineRow {
-    /// The rows of a spine.
+    /// The rows of a spine of single particles.
     pub(super) fn along(spine: &[ParticleId]) -> impl Iterator<Item = Self> + '_ {
         (0..spine.len()).map(|i| Self {
             particle: spine[i].0,
@@ -163,18 +177,66 @@ impl SpineRow {
     }
 }
 
+/// The sections of a spine that are more than single particles.
+#[derive(Clone, Debug)]
+pub(super) struct Sections {
+    /// Section by section.
+    pub(super) particles: Vec<u32>,
+    /// How many particles a section has.
+    pub(super) width: usize,
+}
+
+impl Sections {
+    /// The sections of a spine and its rows, one a particle.
+    fn of(friction: &SpineFriction) -> (Self, Vec<SpineRow>) {
+        let sections = friction.sections().enumerate();
+        let last = (friction.spine().len() / friction.width()).saturating_sub(1);
+        let rows = sections.flat_map(|(i, section)| {
+            let (previous, next) = (i.saturating_sub(1) as u32, (i + 1).min(last) as u32);
+            section.iter().map(move |particle| SpineRow { particle: particle.0, previous, next })
+        });
+        let particles = friction.spine().iter().map(|particle| particle.0).collect();
+        (Self { particles, width: friction.width() }, rows.collect())
+    }
+}
+
 /// Friction rates as the friction rules read them.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct FrictionRow<R> {
     pub(super) ratchet: bool,
     pub(super) has_drag: bool,
     pub(super) has_grip: bool,
+    pub(super) has_isotropic: bool,
     pub(super) drag: R,
-    pub(super) grip: R,
+    pub(super) grip: Fading<R>,
+    pub(super) isotropic: Fading<R>,
     /// 1 − e^(−μ_f dt): what drag takes in a step.
     pub(super) drag_loss: R,
-    /// 1 − e^(−μ_l dt): what grip takes in a step.
-    pub(super) grip_loss: R,
+}
+
+/// A rate at which something dies away.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Fading<R> {
+    /// μ.
+    pub(super) rate: R,
+    /// 1 − e^(−μ dt): what goes in a step.
+    pub(super) loss: R,
+}
+
+impl<R: Real> Fading<R> {
+    /// The same in every lane.
+    pub(super) fn splat(rate: f64, dt: f64) -> Self {
+        Self { rate: R::splat(rate), loss: R::splat(-libm::expm1(-rate * dt)) }
+    }
+
+    pub(super) fn set_lane(&mut self, lane: usize, rate: f64, dt: f64) {
+        self.rate.set_lane(lane, rate);
+        self.loss.set_lane(lane, -libm::expm1(-rate * dt));
+    }
+
+    pub(super) fn lane(&self, lane: usize) -> Fading<f64> {
+        Fading { rate: self.rate.lane(lane), loss: self.loss.lane(lane) }
+    }
 }
 
 /// Damping in proportion to mass.
@@ -195,11 +257,14 @@ pub struct Model<R, const D: usize> {
     pub(super) inverse_mass: Vec<R>,
     pub(super) springs: Vec<SpringRow<R>>,
     pub(super) muscles: Vec<MuscleRow<R>>,
+    pub(super) strand: Option<StrandRows<R>>,
     pub(super) spine: Vec<SpineRow>,
+    /// Where the sections of the spine are more than single particles.
+    pub(super) sections: Option<Sections>,
     pub(super) friction: Option<FrictionRow<R>>,
     pub(super) coulomb: Option<Coulomb<R, D>>,
     pub(super) gravity: Option<R>,
-    pub(super) ground: Option<Ground>,
+    pub(super) contact: Contact<R, D>,
     pub(super) damping: Option<DampingRow<R>>,
     pub(super) stick: StickRule,
     /// Rest lengths at the time of the last evaluation: scratch of the force loop.
@@ -247,25 +312,35 @@ impl<R: Real, const D: usize> Model<R, D> {
             rest_length: zero,
             longest: zero,
         };
-        let spine = body.friction.map_or(&[][..], SpineFriction::spine);
+        let (sections, spine) = match body.friction {
+            Some(friction) if friction.width() > 1 => {
+                let (sections, rows) = Sections::of(friction);
+                (Some(sections), rows)
+            }
+            friction => (None, SpineRow::along(friction.map_or(&[], SpineFriction::spine)).collect()),
+        };
+        let contact = Contact::new(body.ground, dt);
         Self {
             dt,
             inverse_mass: vec![zero; body.particles.len()],
             springs: body.springs.iter().map(spring).collect(),
             muscles: body.muscles.into_iter().flat_map(Muscles::iter).map(MuscleRow::idle).collect(),
-            spine: SpineRow::along(spine).collect(),
+            strand: body.strand.map(|strand| StrandRows::idle(strand, body.waves)),
+            spine,
+            sections,
             friction: body.friction.map(|friction| FrictionRow {
                 ratchet: friction.ratchet(),
                 has_drag: false,
-                has_grip: false,
+                has_grip: contact.has_patches(),
+                has_isotropic: false,
                 drag: zero,
-                grip: zero,
+                grip: Fading { rate: zero, loss: zero },
+                isotropic: Fading { rate: zero, loss: zero },
                 drag_loss: zero,
-                grip_loss: zero,
             }),
             coulomb: body.coulomb.map(|coulomb| Coulomb::idle(coulomb, body.particles.len())),
             gravity: body.gravity.map(|_| zero),
-            ground: body.ground,
+            contact,
             damping: body.mass_damping.map(|_| DampingRow { rate: zero, loss: zero }),
             stick: body.stick,
             rest: vec![zero; body.springs.len()],
@@ -292,13 +367,19 @@ impl<R: Real, const D: usize> Model<R, D> {
         for (row, (muscle, &epoch)) in self.muscles.iter_mut().zip(muscles) {
             row.set_lane(lane, muscle, epoch);
         }
+        if let Some(strand) = &mut self.strand {
+            strand.set_lane(lane, body, LONGEST_STRETCH);
+        }
         if let (Some(row), Some(friction)) = (&mut self.friction, body.friction) {
-            row.has_drag |= friction.drag() > 0.0;
+            let rests = body.waves.is_some_and(|waves| !waves.is_active());
+            let drag = if rests { friction.drag().max(friction.brake()) } else { friction.drag() };
+            row.has_drag |= drag > 0.0;
             row.has_grip |= friction.grip() > 0.0;
-            row.drag.set_lane(lane, friction.drag());
-            row.grip.set_lane(lane, friction.grip());
-            row.drag_loss.set_lane(lane, -libm::expm1(-friction.drag() * self.dt));
-            row.grip_loss.set_lane(lane, -libm::expm1(-friction.grip() * self.dt));
+            row.has_isotropic |= friction.isotropic() > 0.0;
+            row.drag.set_lane(lane, drag);
+            row.drag_loss.set_lane(lane, -libm::expm1(-drag * self.dt));
+            row.grip.set_lane(lane, friction.grip(), self.dt);
+            row.isotropic.set_lane(lane, friction.isotropic(), self.dt);
         }
         if let Some(coulomb) = &mut self.coulomb {
             coulomb.set_lane(lane, body);
@@ -349,18 +430,21 @@ impl<R: Real, const D: usize> Model<R, D> {
                     epoch_cycles: of(&row.epoch_cycles),
                 })
                 .collect(),
+            strand: self.strand.as_ref().map(|strand| strand.lane(lane)),
             spine: self.spine.clone(),
+            sections: self.sections.clone(),
             friction: self.friction.as_ref().map(|row| FrictionRow {
                 ratchet: row.ratchet,
                 has_drag: row.has_drag,
                 has_grip: row.has_grip,
+                has_isotropic: row.has_isotropic,
                 drag: of(&row.drag),
-                grip: of(&row.grip),
+                grip: row.grip.lane(lane),
+                isotropic: row.isotropic.lane(lane),
                 drag_loss: of(&row.drag_loss),
-                grip_loss: of(&row.grip_loss),
             }),
             gravity: self.gravity.as_ref().map(of),
-            ground: self.ground,
+            contact: self.contact.lane(lane),
             coulomb: self.coulomb.as_ref().map(|coulomb| coulomb.lane(lane)),
             damping: self.damping.as_ref().map(|row| DampingRow { rate: of(&row.rate), loss: of(&row.loss) }),
             stick: self.stick,

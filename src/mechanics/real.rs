@@ -43,6 +43,9 @@ pub trait Real:
 
     /// In every lane where `self < bound`, `then`; elsewhere, and where either is NaN, `otherwise`.
     fn if_below(self, bound: Self, then: Self, otherwise: Self) -> Self;
+
+    /// Whether any lane is below `bound`: for leaving out work whose result no lane would take.
+    fn any_below(self, bound: Self) -> bool;
 }
 
 impl Real for f64 {
@@ -76,6 +79,11 @@ impl Real for f64 {
     #[inline(always)]
     fn if_below(self, bound: Self, then: Self, otherwise: Self) -> Self {
         if self < bound { then } else { otherwise }
+    }
+
+    #[inline(always)]
+    fn any_below(self, bound: Self) -> bool {
+        self < bound
     }
 }
 
@@ -170,5 +178,10 @@ impl<const W: usize> Real for Lanes<W> {
             out.0[lane] = if self.0[lane] < bound.0[lane] { then.0[lane] } else { otherwise.0[lane] };
         }
         out
+    }
+
+    #[inline(always)]
+    fn any_below(self, bound: Self) -> bool {
+        self.0.iter().zip(&bound.0).any(|(value, bound)| value < bound)
     }
 }

@@ -13,9 +13,9 @@ mod lanczos;
 
 use bevy::math::DVec3;
 
-use crate::body::{MassDamping, ParticleId, Particles, Spring, SpringId};
+use crate::body::{MassDamping, ParticleId, Particles, SpineFriction, Spring, SpringId};
 
-use super::{BodyParts, rest_length};
+use super::{BodyParts, rest_lengths};
 
 use lanczos::largest_eigenvalue;
 
@@ -82,7 +82,7 @@ pub fn stability_bound(body: &BodyParts<'_>, time: f64) -> StabilityBound {
             Some(MassDamping::PerStep(loss)) => Some(loss),
             _ => None,
         },
-        friction: body.friction.map_or(0.0, |friction| friction.drag().max(friction.grip())),
+        friction: body.friction.map_or(0.0, SpineFriction::fastest),
     }
 }
 
@@ -127,8 +127,7 @@ struct Line {
 }
 
 fn lines(body: &BodyParts<'_>, time: f64) -> Vec<Line> {
-    let line = |(i, spring): (usize, Spring)| {
-        let rest = rest_length(body.springs, body.muscles, SpringId(i as u32), time);
+    let line = |(spring, rest): (Spring, f64)| {
         let difference = difference(body.particles, spring.ends);
         let (direction, length) = difference.normalize_and_length();
         Line {
@@ -140,7 +139,7 @@ fn lines(body: &BodyParts<'_>, time: f64) -> Vec<Line> {
             across: if length > 0.0 { spring.stiffness * (1.0 - rest / length) } else { spring.stiffness },
         }
     };
-    body.springs.iter().enumerate().map(line).collect()
+    body.springs.iter().zip(rest_lengths(body, time)).map(line).collect()
 }
 
 /// The least of what bounds each rate of a body that can move across its springs.

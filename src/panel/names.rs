@@ -7,7 +7,7 @@ use crate::body::Requirement;
 pub struct Path<'a> {
     /// The body's name, or `clock`.
     pub owner: &'a str,
-    /// `springs`, `particles`, `muscles`, `friction`, or nothing.
+    /// `springs`, `particles`, `muscles`, `waves`, `gait`, `friction`, or nothing.
     pub group: &'a str,
     /// The element, where the path names one.
     pub index: Option<usize>,
@@ -17,7 +17,7 @@ pub struct Path<'a> {
 
 impl<'a> Path<'a> {
     /// The groups of a body.
-    const GROUPS: [&'static str; 4] = ["springs", "particles", "muscles", "friction"];
+    const GROUPS: [&'static str; 6] = ["springs", "particles", "muscles", "waves", "gait", "friction"];
 
     /// Takes a path apart. A body's name may contain points.
     pub fn parse(path: &'a str) -> Self {
@@ -60,6 +60,12 @@ impl Name {
             "period" => ("period T", Positive),
             "phase" => ("phase φ", Finite),
             "ramp" => ("ramp", NonNegative),
+            "wavelength" => ("wavelength λ", Positive),
+            "lead" => ("lead ψ", Finite),
+            "steering" => ("steering b", Finite),
+            "active" => ("muscles work", NonNegative),
+            "isotropic" => ("isotropic friction μ", NonNegative),
+            "brake" => ("brake", NonNegative),
             "drag" => ("forward drag μ_f", NonNegative),
             "grip" => ("side grip μ_l", NonNegative),
             "ratchet" => ("ratchet", NonNegative),

@@ -203,7 +203,10 @@ pub fn observe(
 fn spine(particles: &Particles, friction: Option<&SpineFriction>) -> Vec<ParticleId> {
     match friction {
         // One more than is shown: the last one's direction needs its neighbour.
-        Some(friction) => friction.spine().iter().copied().take(MOST_SERIES + 1).collect(),
+        // Of sections, the first particle stands for all.
+        Some(friction) => {
+            friction.sections().filter_map(|section| section.first().copied()).take(MOST_SERIES + 1).collect()
+        }
         None => (0..particles.len().min(MOST_SERIES + 1) as u32).map(ParticleId).collect(),
     }
 }

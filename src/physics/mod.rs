@@ -31,7 +31,7 @@ use bevy::{
 use crate::{body::Particles, mechanics::integrators::Method};
 
 pub use clock::{Clock, Pace};
-pub use plan::Plan;
+pub use plan::{Plan, body_parts};
 pub use restart::{Restart, StartState};
 pub use step::{Cost, Work};
 pub use sync::{FollowParticle, Previous, Shown, ShownLap};

@@ -10,7 +10,10 @@ use bevy::{
 };
 
 use crate::{
-    body::{CoulombFriction, Gravity, Ground, MassDamping, Muscles, Particles, SpineFriction, Springs},
+    body::{
+        CoulombFriction, Gravity, Ground, MassDamping, Muscles, Particles, SpineFriction, Springs, Strand,
+        TravelingWaves,
+    },
     mechanics::{
         BodyParts,
         integrators::{Method, StickRule},
@@ -24,6 +27,8 @@ use super::{Clock, Frozen};
 pub(super) struct Parts {
     springs: &'static Springs,
     muscles: Option<&'static Muscles>,
+    strand: Option<&'static Strand>,
+    waves: Option<&'static TravelingWaves>,
     friction: Option<&'static SpineFriction>,
     coulomb: Option<&'static CoulombFriction>,
     gravity: Option<&'static Gravity>,
@@ -40,16 +45,36 @@ impl PartsItem<'_, '_> {
             particles,
             springs: self.springs,
             muscles: self.muscles,
+            strand: self.strand.copied(),
+            waves: self.waves,
             friction: self.friction,
             coulomb: self.coulomb,
             // Gravity of zero is none: it must not cost a body its axis.
             gravity: self.gravity.copied().filter(|gravity| gravity.acceleration() > 0.0),
-            ground: self.ground.copied(),
+            ground: self.ground,
             mass_damping: self.mass_damping.copied(),
             method: *self.method,
             stick: *self.stick,
         }
     }
+}
+
+/// Borrows a body for mechanics as physics steps it; nothing where the entity is none.
+pub fn body_parts(entity: EntityRef<'_>) -> Option<BodyParts<'_>> {
+    Some(BodyParts {
+        particles: entity.get()?,
+        springs: entity.get()?,
+        muscles: entity.get(),
+        strand: entity.get().copied(),
+        waves: entity.get(),
+        friction: entity.get(),
+        coulomb: entity.get(),
+        gravity: entity.get::<Gravity>().copied().filter(|gravity| gravity.acceleration() > 0.0),
+        ground: entity.get(),
+        mass_damping: entity.get().copied(),
+        method: entity.get().copied()?,
+        stick: entity.get().copied()?,
+    })
 }
 
 /// What physics has worked out about a body. Brought up to date before every tick.
@@ -97,6 +122,8 @@ type Changes = Or<(
     Changed<SpineFriction>,
     Changed<CoulombFriction>,
     Changed<Muscles>,
+    Changed<Strand>,
+    Changed<TravelingWaves>,
     Changed<Gravity>,
     Changed<Ground>,
     Changed<MassDamping>,
@@ -151,7 +178,11 @@ fn topology(body: &BodyParts<'_>) -> u64 {
         (muscle.spring, muscle.wave).hash(&mut hasher);
     }
     if let Some(friction) = body.friction {
-        (friction.ratchet(), friction.spine()).hash(&mut hasher);
+        (friction.ratchet(), friction.width(), friction.spine()).hash(&mut hasher);
+    }
+    body.strand.hash(&mut hasher);
+    for wave in body.waves.into_iter().flat_map(TravelingWaves::iter) {
+        (wave.kind, wave.form).hash(&mut hasher);
     }
     body.coulomb.map(CoulombFriction::spine).hash(&mut hasher);
     (body.ground.is_some(), body.gravity.is_some(), body.mass_damping.is_some()).hash(&mut hasher);
@@ -174,6 +205,18 @@ fn misfit(body: &BodyParts<'_>) -> Option<String> {
     }
     if body.muscles.is_some_and(|muscles| muscles.iter().any(|muscle| muscle.spring.index() >= body.springs.len())) {
         return Some(format!("its muscles were made for another body; this one has {} springs", body.springs.len()));
+    }
+    if body.strand.is_some_and(|strand| strand.springs() != body.springs.len() || strand.particles() != particles) {
+        return Some(format!(
+            "its strand was made for another body; this one has {particles} particles and {} springs",
+            body.springs.len()
+        ));
+    }
+    if body.waves.is_some() && body.strand.is_none() {
+        return Some("its waves need a strand to travel along".into());
+    }
+    if body.method == Method::ExactFlow && body.friction.is_some_and(|friction| friction.isotropic() > 0.0) {
+        return Some("ExactFlow knows no isotropic friction".into());
     }
     if body.method == Method::ExactFlow && body.coulomb.is_some() {
         return Some("ExactFlow does not locate the events of Coulomb friction".into());

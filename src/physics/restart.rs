@@ -2,7 +2,7 @@
 
 use bevy::ecs::prelude::*;
 
-use crate::body::{Muscles, Particles};
+use crate::body::{Muscles, Particles, TravelingWaves};
 
 use super::{Clock, Cost, Frozen, Previous, Work};
 
@@ -32,6 +32,7 @@ type Bodies<'w, 's> = Query<
         &'static StartState,
         &'static mut Work,
         Option<&'static mut Muscles>,
+        Option<&'static mut TravelingWaves>,
     ),
 >;
 
@@ -48,12 +49,15 @@ pub(super) fn restart(
     }
     clock.rewind();
     *cost = Cost::default();
-    for (body, mut particles, mut previous, start, mut work, muscles) in &mut bodies {
+    for (body, mut particles, mut previous, start, mut work, muscles, waves) in &mut bodies {
         *work = Work::default();
         particles.set_state(&start.0);
         previous.position.clone_from(start.0.position_columns());
         if let Some(mut muscles) = muscles {
             muscles.rewind();
+        }
+        if let Some(mut waves) = waves {
+            waves.rewind();
         }
         commands.entity(body).remove::<Frozen>();
     }

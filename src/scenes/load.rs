@@ -10,13 +10,16 @@ use bevy::math::DVec3;
 
 use super::{Camera, Placement, Props, SceneClock, SceneFile, parameters, spawn};
 use crate::{
-    body::{BodyError, Ground, LEAST_REST_FRACTION, Muscles},
+    body::{BodyError, Ground, LEAST_REST_FRACTION, Muscles, TravelingWaves},
     creatures::{
         Body, Creature, FileError, MOST_PARTICLES, Pose,
         library::{self, CREATURE, SCENE, Source},
         parse,
     },
-    mechanics::integrators::{Method, StickRule},
+    mechanics::{
+        ground_distance,
+        integrators::{Method, StickRule},
+    },
 };
 
 /// A scene with its creatures, read and found to be good.
@@ -103,7 +106,7 @@ pub fn load_creature(name: &str) -> Result<LoadedScene, FileError> {
         version: 1,
         title: stem.clone(),
         gravity: creature.gravity.unwrap_or(0.0),
-        ground: creature.ground,
+        ground: creature.ground.clone(),
         creatures: vec![Placement {
             name: usable_name(&stem),
             creature: reference(&source),
@@ -166,13 +169,18 @@ fn check(mut scene: LoadedScene) -> Result<LoadedScene, FileError> {
     let mut warnings = Vec::new();
     for (i, body) in scene.bodies().enumerate() {
         let body = body?;
-        if scene.file.ground == Some(Ground::Flat) {
-            check_above_ground(&scene, i, &body)?;
+        if let Some(ground) = &scene.file.ground {
+            check_above_ground(&scene, ground, i, &body)?;
         }
         if let Some(muscles) = &body.muscles
             && warned.insert(&scene.creatures[i].0)
         {
             warnings.extend(wide_waves(muscles).map(|text| format!("{}: {text}", scene.creatures[i].0)));
+        }
+        if let Some(waves) = body.waves.as_ref().filter(|waves| waves.is_cut())
+            && warned.insert(&scene.creatures[i].0)
+        {
+            warnings.push(format!("{}: {}", scene.creatures[i].0, cut_waves(waves)));
         }
     }
     scene.warnings = warnings;
@@ -208,35 +216,46 @@ fn usable_name(name: &str) -> String {
     }
 }
 
-fn check_above_ground(scene: &LoadedScene, creature: usize, body: &Body) -> Result<(), FileError> {
+fn check_above_ground(scene: &LoadedScene, ground: &Ground, creature: usize, body: &Body) -> Result<(), FileError> {
     // What a turn or a sum rounds off is no mistake.
     const ROUNDING: f64 = 1e-9;
-    let Some((i, lowest)) = (0..).zip(body.particles.positions()).min_by(|a: &(usize, _), b| a.1.y.total_cmp(&b.1.y))
-    else {
+    let distances = body.particles.positions().map(|position| ground_distance(ground, position).0);
+    let Some((i, distance)) = (0..).zip(distances).min_by(|a: &(usize, f64), b| a.1.total_cmp(&b.1)) else {
         return Ok(());
     };
-    if lowest.y >= -ROUNDING {
+    if distance >= -ROUNDING {
         return Ok(());
     }
     let (x, y, z) = scene.file.creatures[creature].at;
-    let depth = -lowest.y;
+    let depth = -distance;
+    // Above the flat ground it is known how to mend it; elsewhere another place may be meant.
+    let flat = *ground == Ground::Flat;
     Err(if scene.source == scene.creatures[creature].0 {
+        let mend = if flat { "lift the creature by that much" } else { "move the creature out of it" };
         scene_conflict(
             scene,
             format!("particles[{i}].position"),
-            format!("is {depth} below the ground; lift the creature by that much, or give ground: None"),
+            format!("is {depth} below the ground; {mend}, or give ground: None"),
         )
     } else {
+        let name = &scene.file.creatures[creature].name;
+        let mend =
+            if flat { format!("at: ({x}, {}, {z}) or higher", y + depth) } else { "another place with `at`".into() };
         scene_conflict(
             scene,
             format!("creatures[{creature}].at"),
-            format!(
-                "puts particle {i} of `{}` {depth} below the ground; give at: ({x}, {}, {z}) or higher, or ground: None",
-                scene.file.creatures[creature].name,
-                y + depth
-            ),
+            format!("puts particle {i} of `{name}` {depth} below the ground; give {mend}, or ground: None"),
         )
     })
+}
+
+fn cut_waves(waves: &TravelingWaves) -> String {
+    format!(
+        "waves: their amplitudes and the steering come to {} together, above {}; a rest length never falls below {LEAST_REST_FRACTION} of its length, so \
+         the waves may be cut",
+        waves.reach(),
+        1.0 - LEAST_REST_FRACTION
+    )
 }
 
 fn wide_waves(muscles: &Muscles) -> impl Iterator<Item = String> + '_ {

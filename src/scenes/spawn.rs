@@ -91,8 +91,8 @@ fn spawn(world: &mut World, scene: &LoadedScene, bodies: Vec<crate::creatures::B
         if let Some(gravity) = gravity {
             entity.insert(gravity);
         }
-        if let Some(ground) = file.ground {
-            entity.insert(ground);
+        if let Some(ground) = &file.ground {
+            entity.insert(ground.clone());
         }
         if matches!(file.props, Props::Garden { .. }) {
             entity.insert(garden::LAP);

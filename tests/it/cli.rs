@@ -252,6 +252,22 @@ fn the_number_of_threads_changes_no_bits() {
 }
 
 #[test]
+fn the_gaits_of_strands_are_reported_and_do_not_depend_on_threads() {
+    let run = |threads: &str| json(&["run", "meadow", "--for", "126", "--dt", "0.05", "--threads", threads]);
+    let [one, two] = ["1", "2"].map(run);
+    assert_eq!(one["hash"], two["hash"]);
+    let snake = &one["bodies"][1];
+    assert_eq!(snake["name"], "snake");
+    let gait = |field: &str| snake["gait"][field].as_f64().unwrap();
+    assert_eq!(gait("cycles"), 2.0);
+    assert!((gait("body_lengths") - gait("distance") / 14.0).abs() < 1e-12);
+    assert!((0.3..0.7).contains(&gait("body_lengths")), "{snake}");
+    assert!(gait("slip") < 0.1 && gait("smallest_cell") > 0.8, "{snake}");
+    let garden = json(&["run", "garden", "--for", "6"]);
+    assert!(garden["bodies"][0].get("gait").is_none());
+}
+
+#[test]
 fn the_creature_of_the_readme_crawls() {
     let readme = include_str!("../../README.md");
     let creature = readme.split("```ron").nth(1).and_then(|rest| rest.split("```").next()).unwrap();

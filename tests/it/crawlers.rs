@@ -85,6 +85,8 @@ impl Crawler {
             particles: &particles,
             springs: &springs,
             muscles: Some(&muscles),
+            strand: None,
+            waves: None,
             friction: None,
             coulomb: Some(&friction),
             gravity: None,

@@ -31,6 +31,8 @@ impl Row {
             particles: &self.particles,
             springs: &self.springs,
             muscles: Some(&self.muscles),
+            strand: None,
+            waves: None,
             friction: None,
             coulomb: None,
             gravity: None,

@@ -353,6 +353,60 @@ fn a_creature_alone_has_the_ground_and_gravity_that_it_asks_for() {
     assert_says(&creature_problem(sunk), &["particles[1].position: is 0.25 below the ground"]);
 }
 
+const STRAND: &str = r#"Creature(version: 1,
+  body: Strand(segments: 6, stiffness: 0.5, damping: 3.5,
+    waves: [(kind: Lateral, amplitude: 0.3, period: 60, wavelength: 10)]),
+  friction: (grip: 10), ground: Flat, gravity: 0.02)
+"#;
+
+#[test]
+fn a_bad_strand_is_refused_with_its_line_and_field() {
+    for (from, to, words) in [
+        (
+            "segments: 6",
+            "segments: 1",
+            &["bad.creature.ron:2", "segments: ", "1 is not allowed; a strand has from 2"][..],
+        ),
+        ("wavelength: 10", "wavelength: 0", &["bad.creature.ron:3", "waves[0].wavelength: ", "0 is not allowed"]),
+        ("kind: Lateral", "kind: Sideways", &["bad.creature.ron:3", "waves[0]", "Lateral"]),
+        ("damping: 3.5", "damping: -1", &["damping: -1 is not allowed"]),
+        ("ground: Flat", "ground: Terrain(surfaces: [])", &["ground", "surfaces: there is none; give one or more"]),
+        ("(grip: 10)", "(grip: 10), coulomb: (forward: 1, backward: 2)", &["coulomb: works along a spine"]),
+    ] {
+        let text = STRAND.replacen(from, to, 1);
+        assert_ne!(text, STRAND);
+        assert_says(&creature_problem(text), words);
+    }
+}
+
+#[test]
+fn waves_that_the_least_rest_length_cuts_are_warned_of() {
+    let (_folder, path) = file("wide.creature.ron", STRAND.replacen("amplitude: 0.3", "amplitude: 0.9", 1));
+    let scene = scenes::load(name(&path)).unwrap();
+    assert_eq!(scene.warnings.len(), 1);
+    assert_says(&scene.warnings[0], &["wide.creature.ron: waves:", "0.9 together, above 0.8"]);
+}
+
+#[test]
+fn an_animal_inside_the_ground_is_refused() {
+    let scene = |ground: &str, at: &str| {
+        SCENE_TEXT
+            .replacen("ground: None", &format!("ground: {ground}"), 1)
+            .replacen("garden-worm", "worm", 1)
+            .replacen("at: (0, 0, 0)", &format!("at: {at}"), 1)
+    };
+    let problem = scene_problem(scene("Flat", "(0, -0.5, 0)"));
+    assert_says(
+        &problem,
+        &["creatures[0].at: puts particle 0 of `worm` 0.5 below the ground", "give at: (0, 0, 0) or higher"],
+    );
+    let hill = "Terrain(surfaces: [Hill(center: (5, 0), radius: 4, height: 1)])";
+    assert_says(&scene_problem(scene(hill, "(0, 0, 0)")), &["creatures[0].at: puts particle", "below the ground"]);
+    let wall = "Terrain(surfaces: [Floor(height: 0), Plane(point: (8, 0, 0), normal: (-1, 0, 0))])";
+    assert_says(&scene_problem(scene(wall, "(0, 0, 0)")), &["creatures[0].at: puts particle", "2 below the ground"]);
+    assert_says(&scene_problem(scene("Terrain(surfaces: [])", "(0, 0, 0)")), &["surfaces: there is none"]);
+}
+
 #[test]
 fn creatures_are_looked_for_beside_their_scene_first() {
     let (folder, path) = file("my.scene.ron", SCENE_TEXT);

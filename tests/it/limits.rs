@@ -17,6 +17,8 @@ fn parts<'a>((particles, springs): &'a (Particles, Springs), method: Method) -> 
         particles,
         springs,
         muscles: None,
+        strand: None,
+        waves: None,
         friction: None,
         coulomb: None,
         gravity: None,

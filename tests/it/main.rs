@@ -2,9 +2,13 @@
 
 mod support;
 
+mod animal;
+mod animals;
+
 mod chart;
 mod cli;
 mod clock;
+mod contact;
 mod crawlers;
 mod determinism;
 mod exact_worm;
@@ -24,6 +28,8 @@ mod parameters;
 mod picture;
 mod race;
 mod saving;
+mod shows;
 mod stability;
+mod strand;
 mod sync;
 mod watch;

@@ -2,7 +2,7 @@
 
 use bevy::prelude::*;
 use wriggle::{
-    body::{Gravity, Muscles, ParticleId, Particles, SpineFriction, SpringId, Springs},
+    body::{Gravity, Muscles, ParticleId, Particles, SpineFriction, SpringId, Springs, TravelingWaves},
     mechanics::integrators::Method,
     physics::Clock,
     scenes::{
@@ -30,7 +30,7 @@ fn component<C: Component + Clone>(world: &mut World) -> C {
 fn every_listed_parameter_can_be_set_and_reads_back() {
     let mut world = world("garden");
     let all = parameters::list(&mut world);
-    assert_eq!(all.len(), 31);
+    assert_eq!(all.len(), 32);
     for Parameter { path, value, range, unit, help, kind } in all {
         assert!(range.contains(&value), "{path}: {value} is outside of {range:?}");
         assert!(!unit.is_empty() && !help.is_empty(), "{path}");
@@ -38,6 +38,33 @@ fn every_listed_parameter_can_be_set_and_reads_back() {
         parameters::set(&mut world, &path, other).unwrap();
         assert_eq!(get(&mut world, &path).value, other, "{path}");
     }
+}
+
+#[test]
+fn waves_are_set_live() {
+    let mut world = world("sand");
+    for Parameter { path, value, range, kind, .. } in parameters::list(&mut world) {
+        let other = if kind == Kind::Toggle { 1.0 - value } else { 0.5 * (range.start() + range.end()) + 0.001 };
+        parameters::set(&mut world, &path, other).unwrap();
+        assert_eq!(get(&mut world, &path).value, other, "{path}");
+    }
+    for (path, value) in [
+        ("snake.waves[1].amplitude", 0.15),
+        ("snake.waves[1].lead", -0.25),
+        ("snake.waves[0].period", 70.0),
+        ("snake.gait.steering", -0.05),
+        ("snake.gait.active", 1.0),
+        ("snake.friction.isotropic", 0.5),
+        ("snake.friction.brake", 0.25),
+    ] {
+        parameters::set(&mut world, path, value).unwrap();
+    }
+    let waves: TravelingWaves = component(&mut world);
+    let (first, second) = (waves.get(0).unwrap(), waves.get(1).unwrap());
+    assert_eq!((second.amplitude, second.lead, first.period), (0.15, -0.25, 70.0));
+    assert_eq!((waves.steering(), waves.is_active()), (-0.05, true));
+    let friction: SpineFriction = component(&mut world);
+    assert_eq!((friction.isotropic(), friction.brake()), (0.5, 0.25));
 }
 
 #[test]

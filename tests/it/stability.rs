@@ -105,6 +105,8 @@ fn the_bound_is_the_true_limit_of_a_long_chain_and_safe_for_unequal_masses() {
             particles,
             springs,
             muscles: None,
+            strand: None,
+            waves: None,
             friction: None,
             coulomb: None,
             gravity: None,

@@ -89,6 +89,8 @@ impl Body {
             particles: &self.particles,
             springs: &self.springs,
             muscles: Some(&self.muscles),
+            strand: None,
+            waves: None,
             friction: Some(&self.friction),
             coulomb: None,
             gravity: None,

@@ -27,5 +27,6 @@ fn are_alike(a: &ProblemBody, b: &ProblemBody) -> bool {
         && a.particles.pinned() == b.particles.pinned()
         && placed(a) == placed(b)
         && (&a.springs, &a.muscles, &a.friction, &a.coulomb) == (&b.springs, &b.muscles, &b.friction, &b.coulomb)
-        && (a.gravity, a.ground, a.mass_damping) == (b.gravity, b.ground, b.mass_damping)
+        && (a.strand, &a.waves) == (b.strand, &b.waves)
+        && (a.gravity, &a.ground, a.mass_damping) == (b.gravity, &b.ground, b.mass_damping)
 }

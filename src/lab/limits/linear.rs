@@ -38,7 +38,7 @@ pub(super) struct Linear {
 
 /// What is left of a body without friction, contact and gravity and with its muscles at rest.
 pub(super) fn bare<'a>(body: &BodyParts<'a>) -> BodyParts<'a> {
-    BodyParts { muscles: None, friction: None, coulomb: None, gravity: None, ground: None, ..*body }
+    BodyParts { muscles: None, waves: None, friction: None, coulomb: None, gravity: None, ground: None, ..*body }
 }
 
 impl Linear {

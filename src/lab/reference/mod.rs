@@ -46,12 +46,16 @@ impl Reference {
     /// Follows all bodies of a problem, without looking into the cache.
     ///
     /// # Errors
-    /// If a body meets a ground or feels Coulomb friction, of which no smooth piece is known, or the motion of one cannot be followed.
+    /// If a body is a strand, meets a ground, or feels isotropic or Coulomb friction, of which no smooth piece is known, or the motion of one cannot be followed.
     pub fn solve(problem: &Problem) -> Result<Self, LabError> {
         let mut reference = Self { positions: Vec::new(), velocities: Vec::new(), events: Vec::new(), error: 0.0 };
         for (index, body) in problem.bodies.iter().enumerate() {
             let unknown = match body {
                 ProblemBody { ground: Some(_), .. } => Some("a body on the ground, whose contacts are not located"),
+                ProblemBody { strand: Some(_), .. } => Some("a strand, whose friction acts on sections"),
+                ProblemBody { friction: Some(friction), .. } if friction.isotropic() > 0.0 => {
+                    Some("isotropic friction")
+                }
                 ProblemBody { coulomb: Some(_), .. } => Some("Coulomb friction, whose events are not located"),
                 _ => None,
             };

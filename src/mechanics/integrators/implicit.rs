@@ -282,7 +282,7 @@ impl<const D: usize> Implicit<D> {
         let dt = model.dt;
         self.place(scheme, model, state, Stage::Now);
         model.acceleration(time + scheme.at * dt, &self.stage.position, &self.stage.velocity, &mut self.acceleration);
-        brake(model, &self.frames, &self.stage.velocity, &mut self.acceleration);
+        brake(model, &self.frames, &self.stage, &mut self.acceleration);
         let mut scale = f64::MIN_POSITIVE;
         for spring in &model.springs {
             let [a, b] = spring.ends.map(|end| end as usize);
@@ -311,20 +311,25 @@ enum Stage {
     Now,
 }
 
-/// Adds drag and grip to accelerations.
+/// Adds drag, grip and isotropic friction to accelerations.
 fn brake<const D: usize>(
     model: &Model<f64, D>,
     frames: &[Frame<f64, D>],
-    velocity: &[[f64; D]],
+    stage: &State<f64, D>,
     acceleration: &mut [[f64; D]],
 ) {
     let Some(friction) = model.friction else { return };
     for (row, frame) in model.spine.iter().zip(frames) {
         let mass = row.particle as usize;
-        let sliding = dot(velocity[mass], frame.forward).max(0.0);
+        let v = stage.velocity[mass];
+        let sliding = dot(v, frame.forward).max(0.0);
         subtract(&mut acceleration[mass], frame.forward, sliding * friction.drag * frame.touches);
-        let across = dot(velocity[mass], frame.side);
-        subtract(&mut acceleration[mass], frame.side, across * friction.grip * frame.touches);
+        let across = dot(v, frame.side) * model.grip_at(&friction, stage.position[mass]).rate;
+        subtract(&mut acceleration[mass], frame.side, across * frame.touches);
+        if friction.has_isotropic {
+            let sliding = model.sliding(frame, v);
+            subtract(&mut acceleration[mass], sliding, friction.isotropic.rate * frame.touches);
+        }
     }
 }
 

@@ -32,6 +32,7 @@ impl<I: Integrator<f64, D>, R: Real, const D: usize> Integrator<R, D> for LaneBy
                 body.position[i] = state.position[i].map(|x| x.lane(lane));
                 body.velocity[i] = state.velocity[i].map(|v| v.lane(lane));
             }
+            own.begin_step(body);
             method.step(own, body, time);
             for i in 0..particles {
                 for axis in 0..D {

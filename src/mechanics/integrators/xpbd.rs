@@ -41,7 +41,7 @@ impl<R: Real, const D: usize> Integrator<R, D> for Xpbd<R, D> {
                 x[axis] += v[axis] * kept * dt;
             }
         }
-        model.drive_muscles(time + model.dt);
+        model.drive_muscles(time + model.dt, &state.position);
         model.evaluations += one;
         for (spring, &rest) in model.springs.iter().zip(&model.rest) {
             let [a, b] = [spring.ends[0] as usize, spring.ends[1] as usize];

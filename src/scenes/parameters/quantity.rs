@@ -6,7 +6,7 @@ use super::{Kind, Parameter};
 use crate::{
     body::{
         BodyError, Gravity, Muscle, Muscles, Particle, ParticleId, Particles, Requirement, SpineFriction, Spring,
-        SpringId, Springs,
+        SpringId, Springs, TravelingWave, TravelingWaves,
     },
     physics::Clock,
 };
@@ -18,6 +18,10 @@ pub(super) enum Group {
     Springs,
     Particles,
     Muscles,
+    /// The waves of a strand, one by one.
+    Waves,
+    /// All waves of a strand together.
+    Gait,
     Friction,
     Gravity,
 }
@@ -29,6 +33,8 @@ impl Group {
             Self::Springs => "springs",
             Self::Particles => "particles",
             Self::Muscles => "muscles",
+            Self::Waves => "waves",
+            Self::Gait => "gait",
             Self::Friction => "friction",
             Self::Gravity => "gravity",
         }
@@ -36,13 +42,14 @@ impl Group {
 
     /// Whether its elements are counted.
     pub(super) fn is_indexed(self) -> bool {
-        matches!(self, Self::Springs | Self::Particles | Self::Muscles)
+        matches!(self, Self::Springs | Self::Particles | Self::Muscles | Self::Waves)
     }
 
     /// Takes the group off the front of the part of a path behind the body's name.
     pub(super) fn parse(path: &str) -> (Option<Self>, &str) {
         let end = path.find(['.', '[']).unwrap_or(path.len());
-        let all = [Self::Springs, Self::Particles, Self::Muscles, Self::Friction, Self::Gravity];
+        let all =
+            [Self::Springs, Self::Particles, Self::Muscles, Self::Waves, Self::Gait, Self::Friction, Self::Gravity];
         (all.into_iter().find(|group| group.name() == &path[..end]), &path[end..])
     }
 }
@@ -60,8 +67,17 @@ pub(super) enum Quantity {
     Period,
     Phase,
     Ramp,
+    WaveAmplitude,
+    WavePeriod,
+    Wavelength,
+    Lead,
+    Steering,
+    GaitRamp,
+    Active,
     Drag,
     Grip,
+    Isotropic,
+    Brake,
     Ratchet,
     Gravity,
 }
@@ -70,7 +86,7 @@ pub(super) enum Quantity {
 type Facts = (Group, &'static str, Requirement, (f64, f64), &'static str, &'static str);
 
 impl Quantity {
-    pub(super) const OF_BODIES: [Self; 12] = [
+    pub(super) const OF_BODIES: [Self; 21] = [
         Self::Stiffness,
         Self::Damping,
         Self::RestLength,
@@ -79,8 +95,17 @@ impl Quantity {
         Self::Period,
         Self::Phase,
         Self::Ramp,
+        Self::WaveAmplitude,
+        Self::WavePeriod,
+        Self::Wavelength,
+        Self::Lead,
+        Self::Steering,
+        Self::GaitRamp,
+        Self::Active,
         Self::Drag,
         Self::Grip,
+        Self::Isotropic,
+        Self::Brake,
         Self::Ratchet,
         Self::Gravity,
     ];
@@ -89,6 +114,8 @@ impl Quantity {
         use Requirement::{Finite, NonNegative, Positive};
         const SPRINGS: Group = Group::Springs;
         const MUSCLES: Group = Group::Muscles;
+        const WAVES: Group = Group::Waves;
+        const GAIT: Group = Group::Gait;
         const FRICTION: Group = Group::Friction;
         match self {
             Self::Dt => (Group::Clock, "dt", Positive, (0.0001, 1.0), "time", "step of the integration, dt"),
@@ -118,6 +145,37 @@ impl Quantity {
             Self::Phase => (MUSCLES, "phase", Finite, (-1.0, 1.0), "cycles", "lag of the wave; positive is later"),
             Self::Ramp => {
                 (MUSCLES, "ramp", NonNegative, (0.0, 5.0), "cycles", "cycles over which the amplitude grows from 0")
+            }
+            Self::WaveAmplitude => {
+                (WAVES, "amplitude", NonNegative, (0.0, 0.8), "of L", "how far the wave drives rest lengths, of L")
+            }
+            Self::WavePeriod => (WAVES, "period", Positive, (5.0, 120.0), "time", "time of one cycle of the wave"),
+            Self::Wavelength => (WAVES, "wavelength", Positive, (2.0, 30.0), "segments", "length of one wave"),
+            Self::Lead => (WAVES, "lead", Finite, (-0.5, 0.5), "cycles", "by how much the wave is ahead"),
+            Self::Steering => {
+                (GAIT, "steering", Finite, (-0.15, 0.15), "of L", "left longer, right shorter; positive turns right")
+            }
+            Self::GaitRamp => (
+                GAIT,
+                "ramp",
+                NonNegative,
+                (0.0, 5.0),
+                "cycles",
+                "cycles over which the muscles come to work or to rest",
+            ),
+            Self::Active => {
+                (GAIT, "active", NonNegative, (0.0, 1.0), "0 or 1", "whether the muscles work; at rest it brakes")
+            }
+            Self::Isotropic => (
+                FRICTION,
+                "isotropic",
+                NonNegative,
+                (0.0, 5.0),
+                "1/time",
+                "rate at which sliding in any direction dies away",
+            ),
+            Self::Brake => {
+                (FRICTION, "brake", NonNegative, (0.0, 5.0), "1/time", "least drag while the muscles of a strand rest")
             }
             Self::Drag => {
                 (FRICTION, "drag", NonNegative, (0.0, 5.0), "1/time", "rate at which forward sliding dies away")
@@ -167,14 +225,18 @@ impl Quantity {
         let widen = |value: f64| libm::pow(10.0, libm::ceil(libm::log10(value)));
         let most = if value > most { widen(value) } else { most };
         let least = if value < -1.0 && value < least { -widen(-value) } else { least.min(value) };
-        let kind = if self == Self::Ratchet { Kind::Toggle } else { Kind::Number };
+        let kind = if self.is_toggle() { Kind::Toggle } else { Kind::Number };
         Parameter { path, value, range: least..=most, unit, help, kind }
+    }
+
+    fn is_toggle(self) -> bool {
+        matches!(self, Self::Ratchet | Self::Active)
     }
 
     pub(super) fn admits(self, value: f64) -> bool {
         self.facts().2.admits(value)
             && match self {
-                Self::Ratchet => value == 0.0 || value == 1.0,
+                _ if self.is_toggle() => value == 0.0 || value == 1.0,
                 Self::TimeScale => value <= Clock::LARGEST_TIME_SCALE,
                 _ => true,
             }
@@ -183,7 +245,7 @@ impl Quantity {
     /// What a value must be, in words.
     pub(super) fn requirement(self) -> String {
         match self {
-            Self::Ratchet => "0 (off) or 1 (on)".into(),
+            _ if self.is_toggle() => "0 (off) or 1 (on)".into(),
             Self::TimeScale => format!("a number from 0 to {}", Clock::LARGEST_TIME_SCALE),
             _ => self.facts().2.to_string(),
         }
@@ -196,6 +258,10 @@ impl Quantity {
             Group::Springs => body.get::<Springs>().map_or(0, Springs::len),
             Group::Particles => body.get::<Particles>().map_or(0, Particles::len),
             Group::Muscles => body.get::<Muscles>().map_or(0, Muscles::len),
+            Group::Waves => body.get::<TravelingWaves>().map_or(0, TravelingWaves::len),
+            Group::Gait => usize::from(body.contains::<TravelingWaves>()),
+            // Only muscles that can be told to rest need a brake.
+            Group::Friction if self == Self::Brake && !body.contains::<TravelingWaves>() => 0,
             Group::Friction => usize::from(body.contains::<SpineFriction>()),
             Group::Gravity => usize::from(body.contains::<Particles>()),
         }
@@ -216,6 +282,12 @@ impl Quantity {
                 .get::<Muscles>()
                 .map(|muscles| muscles.iter().map(|mut muscle| *self.of_muscle(&mut muscle)).collect())
                 .unwrap_or_default(),
+            Group::Waves => body
+                .get::<TravelingWaves>()
+                .map(|waves| waves.iter().map(|mut wave| *self.of_wave(&mut wave)).collect())
+                .unwrap_or_default(),
+            Group::Gait => body.get::<TravelingWaves>().map(|waves| self.of_gait(waves)).into_iter().collect(),
+            Group::Friction if self.count(body) == 0 => Vec::new(),
             Group::Friction => {
                 body.get::<SpineFriction>().map(|friction| self.of_friction(friction)).into_iter().collect()
             }
@@ -261,6 +333,19 @@ impl Quantity {
                         muscles.set(i, muscle, time)?;
                     }
                 }
+                Group::Waves => {
+                    if let Some(mut waves) = body.get_mut::<TravelingWaves>()
+                        && let Some(mut wave) = waves.get(i)
+                    {
+                        *self.of_wave(&mut wave) = value;
+                        waves.set(i, wave, time)?;
+                    }
+                }
+                Group::Gait => {
+                    if let Some(mut waves) = body.get_mut::<TravelingWaves>() {
+                        self.set_gait(&mut waves, value, time)?;
+                    }
+                }
                 Group::Friction => {
                     if let Some(mut friction) = body.get_mut::<SpineFriction>() {
                         *friction = self.with_friction(friction.clone(), value)?;
@@ -291,9 +376,39 @@ impl Quantity {
         }
     }
 
+    fn of_wave(self, wave: &mut TravelingWave) -> &mut f64 {
+        match self {
+            Self::WavePeriod => &mut wave.period,
+            Self::Wavelength => &mut wave.wavelength,
+            Self::Lead => &mut wave.lead,
+            _ => &mut wave.amplitude,
+        }
+    }
+
+    fn of_gait(self, waves: &TravelingWaves) -> f64 {
+        match self {
+            Self::GaitRamp => waves.ramp(),
+            Self::Active => f64::from(u8::from(waves.is_active())),
+            _ => waves.steering(),
+        }
+    }
+
+    fn set_gait(self, waves: &mut TravelingWaves, value: f64, time: f64) -> Result<(), BodyError> {
+        match self {
+            Self::GaitRamp => waves.set_ramp(value, time),
+            Self::Active => {
+                waves.set_active(value != 0.0, time);
+                Ok(())
+            }
+            _ => waves.set_steering(value),
+        }
+    }
+
     fn of_friction(self, friction: &SpineFriction) -> f64 {
         match self {
             Self::Grip => friction.grip(),
+            Self::Isotropic => friction.isotropic(),
+            Self::Brake => friction.brake(),
             Self::Ratchet => f64::from(u8::from(friction.ratchet())),
             _ => friction.drag(),
         }
@@ -302,6 +417,8 @@ impl Quantity {
     fn with_friction(self, friction: SpineFriction, value: f64) -> Result<SpineFriction, BodyError> {
         match self {
             Self::Grip => friction.with_grip(value),
+            Self::Isotropic => friction.with_isotropic(value),
+            Self::Brake => friction.with_brake(value),
             Self::Ratchet => Ok(friction.with_ratchet(value != 0.0)),
             _ => friction.with_drag(value),
         }

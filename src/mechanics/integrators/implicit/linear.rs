@@ -115,7 +115,18 @@ impl<const D: usize> Linear<D> {
                     0.0
                 };
                 add(&mut self.diagonal[mass], frame.forward, weight * slides);
-                add(&mut self.diagonal[mass], frame.side, weight * friction.grip);
+                let grip = model.grip_at(&friction, stage.position[mass]).rate;
+                add(&mut self.diagonal[mass], frame.side, weight * grip);
+                if friction.has_isotropic {
+                    for (axis, row) in self.diagonal[mass].iter_mut().enumerate() {
+                        let mut along = [0.0; D];
+                        along[axis] = 1.0;
+                        let sliding = model.sliding(frame, along);
+                        for (value, part) in row.iter_mut().zip(sliding) {
+                            *value += weight * friction.isotropic.rate * part;
+                        }
+                    }
+                }
             }
         }
         if let Some(factor) = &mut self.factor {

@@ -1,7 +1,6 @@
-//! What surrounds a body: gravity and the ground.
+//! What pulls at a body: gravity.
 
 use bevy::{ecs::prelude::*, prelude::ReflectComponent, reflect::Reflect};
-use serde::{Deserialize, Serialize};
 
 use super::{BodyError, Requirement, check};
 
@@ -23,18 +22,4 @@ impl Gravity {
     pub fn acceleration(self) -> f64 {
         self.0
     }
-}
-
-/// The ground that a body stands on: no particle of the body gets below it, and friction acts only on masses that touch it.
-/// A body without this component meets no ground, and its friction always acts.
-#[derive(Clone, Component, Copy, Debug, PartialEq, Eq, Reflect, Serialize, Deserialize)]
-#[reflect(Component)]
-pub enum Ground {
-    /// The plane y = 0.
-    Flat,
-}
-
-impl Ground {
-    /// A mass nearer to the ground than this touches it, and friction acts on it.
-    pub const CONTACT_DISTANCE: f64 = 0.05;
 }

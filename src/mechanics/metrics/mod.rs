@@ -1,0 +1,11 @@
+//! What a strand does, in numbers: what can be said of it at one moment, and of its gait over cycles ([`Gait`]).
+
+mod fourier;
+mod gait;
+mod path;
+mod pose;
+
+pub use gait::{Gait, GaitMetrics, SAMPLES_A_CYCLE};
+pub use pose::{
+    bend, cell_volume, heading, is_lifted, section_center, section_width, segment_length, spine_vector, strains,
+};
