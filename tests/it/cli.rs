@@ -261,7 +261,8 @@ fn the_gaits_of_strands_are_reported_and_do_not_depend_on_threads() {
     let gait = |field: &str| snake["gait"][field].as_f64().unwrap();
     assert_eq!(gait("cycles"), 2.0);
     assert!((gait("body_lengths") - gait("distance") / 14.0).abs() < 1e-12);
-    assert!((0.3..0.7).contains(&gait("body_lengths")), "{snake}");
+    // It has hardly begun to bend.
+    assert!((0.1..0.7).contains(&gait("body_lengths")), "{snake}");
     assert!(gait("slip") < 0.1 && gait("smallest_cell") > 0.8, "{snake}");
     let garden = json(&["run", "garden", "--for", "6"]);
     assert!(garden["bodies"][0].get("gait").is_none());
