@@ -151,8 +151,8 @@ fn nearest<R: Real>(surfaces: &[SurfaceRow], x: [R; 3]) -> (R, [R; 3]) {
     let mut nearest = (R::splat(f64::MAX), [R::splat(0.0); 3]);
     for surface in surfaces {
         let (distance, normal) = surface.distance(x);
-        for axis in 0..3 {
-            nearest.1[axis] = distance.if_below(nearest.0, normal[axis], nearest.1[axis]);
+        for (found, own) in nearest.1.iter_mut().zip(normal) {
+            *found = distance.if_below(nearest.0, own, *found);
         }
         nearest.0 = distance.if_below(nearest.0, distance, nearest.0);
     }

@@ -329,7 +329,7 @@ impl<R: Real, const D: usize> Model<R, D> {
 /// Vectors with three coordinates, which those of a strand always have.
 #[inline(always)]
 fn in_space<R, const D: usize>(vectors: &[[R; D]]) -> Option<&[[R; 3]]> {
-    (D == 3).then(|| vectors.as_flattened().as_chunks().0)
+    (D == 3).then_some(vectors.as_flattened().as_chunks().0)
 }
 
 impl<R: Real> StrandRows<R> {
