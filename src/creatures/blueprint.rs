@@ -187,7 +187,8 @@ impl Creature {
     /// How it wants to be drawn.
     pub fn look(&self) -> Look {
         match &self.body {
-            Plan::Raw(_) | Plan::Strand(_) => Look::Plain,
+            Plan::Raw(_) => Look::Plain,
+            Plan::Strand(strand) => Look::Strand(strand.skin),
             Plan::GardenWorm(_) => Look::GardenWorm,
         }
     }

@@ -27,7 +27,7 @@ pub use blueprint::{Coulomb, Creature, Friction, Plan, RawBody, RawMuscle, RawPa
 pub use build::{Body, Pose};
 pub use error::FileError;
 pub use garden_worm::GardenWorm;
-pub use look::Look;
+pub use look::{Look, Skin};
 pub(crate) use parse::{CurrentVersion, options, parse, version};
 pub use strand::{StrandPlan, WavePlan};
 

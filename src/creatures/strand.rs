@@ -3,7 +3,7 @@
 use bevy::math::DVec3;
 use serde::{Deserialize, Deserializer, Serialize, de};
 
-use super::{MOST_PARTICLES, RawBody, RawParticle, RawSpring, numbers};
+use super::{MOST_PARTICLES, RawBody, RawParticle, RawSpring, Skin, numbers};
 use crate::body::{BodyError, Springs, Strand, TravelingWave, TravelingWaves, Wave, WaveDirection, WaveKind};
 
 /// A row of cubes of edge 1 from the tail at x = 0 to the head at x = segments, standing on y = 0 and symmetric about z = 0. A new gait is another list
@@ -35,6 +35,9 @@ pub struct StrandPlan {
     /// Cycles of the slowest wave over which the muscles come to work. Left out: 1.
     #[serde(default = "one", deserialize_with = "numbers::non_negative")]
     pub ramp: f64,
+    /// How it is drawn. Left out: as a worm.
+    #[serde(default)]
+    pub skin: Skin,
 }
 
 /// A wave that drives the axial springs of segment j of n by amplitude·form(t/period ∓ (n − j − ½)/wavelength + lead).

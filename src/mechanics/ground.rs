@@ -120,6 +120,12 @@ pub fn ground_distance(ground: &Ground, position: DVec3) -> (f64, DVec3) {
     }
 }
 
+/// The side grip (1 a unit of time) of a mass that stands on a ground there; `elsewhere` off all patches.
+pub fn ground_grip(ground: &Ground, position: DVec3, elsewhere: f64) -> f64 {
+    // Rates do not depend on the step.
+    Contact::<f64, 3>::new(Some(ground), 1.0).grip(position.to_array(), Fading::splat(elsewhere, 1.0)).rate
+}
+
 fn rows(terrain: &Terrain) -> Vec<SurfaceRow> {
     let mut rows = Vec::new();
     for surface in terrain.surfaces() {

@@ -24,7 +24,7 @@ mod wave;
 pub use advance::{Advance, Timeline};
 pub use energy::{angular_momentum, elastic_energy, kinetic_energy, momentum};
 pub use forces::{rest_length, rest_lengths};
-pub use ground::ground_distance;
+pub use ground::{ground_distance, ground_grip};
 pub use model::{BodyParts, Explosion, Model, State};
 pub use real::{Lanes, Real};
 pub use stability::{Damping, Rates, StabilityBound, stability_bound};

@@ -66,7 +66,7 @@ fn spawn(quality: Res<Quality>, target: Option<Res<OffscreenTarget>>, mut comman
             pitch_lower_limit: Some(0.03),
             pitch_upper_limit: Some(1.5),
             zoom_lower_limit: 1.5,
-            zoom_upper_limit: Some(45.0),
+            zoom_upper_limit: Some(120.0),
             orbit_smoothness: 0.25,
             zoom_smoothness: 0.25,
             trackpad_behavior: TrackpadBehavior::blender_default(),

@@ -7,7 +7,10 @@ use bevy_egui::{
     input::EguiWantsInput,
 };
 
-use super::camera::FollowWorm;
+use super::{
+    camera::FollowWorm,
+    peel::{LEGEND, Peeled},
+};
 
 /// Whether the keys are written on the screen; key `H`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Reflect, Resource)]
@@ -21,11 +24,12 @@ impl Default for KeyHelp {
 }
 
 /// Every key and what it does.
-const KEYS: [(&str, &str); 9] = [
+const KEYS: [(&str, &str); 10] = [
     ("Drag", "look around"),
     ("Right drag", "move"),
     ("Wheel", "nearer, further"),
-    ("C", "follow the worm"),
+    ("C", "follow the animal"),
+    ("X", "take off the skin"),
     ("Space", "pause"),
     (". (dot)", "one tick"),
     ("R", "start again"),
@@ -39,7 +43,7 @@ pub(super) fn plugin(app: &mut App) {
     }
     app.init_resource::<KeyHelp>()
         .add_systems(Update, toggle.run_if(not(typing)))
-        .add_systems(EguiPrimaryContextPass, write);
+        .add_systems(EguiPrimaryContextPass, (write, write_legend));
 }
 
 /// Whether keys go into a panel's text field.
@@ -51,6 +55,28 @@ fn toggle(keys: Res<ButtonInput<KeyCode>>, mut help: ResMut<KeyHelp>) {
     if keys.just_pressed(KeyCode::KeyH) {
         help.0 = !help.0;
     }
+}
+
+/// What the colours of the view without skins mean.
+fn write_legend(mut contexts: EguiContexts, peeled: Res<Peeled>) -> Result {
+    if !peeled.0 {
+        return Ok(());
+    }
+    let context = contexts.ctx_mut()?;
+    let frame = egui::Frame::new().fill(Color32::from_black_alpha(190)).corner_radius(8).inner_margin(10);
+    egui::Area::new("legend".into()).anchor(Align2::RIGHT_TOP, [-12.0, 12.0]).interactable(false).show(context, |ui| {
+        frame.show(ui, |ui| {
+            egui::Grid::new("legend").spacing([10.0, 3.0]).show(ui, |ui| {
+                for (color, means) in LEGEND {
+                    let [r, g, b, _] = color.to_u8_array();
+                    ui.label(RichText::new("■").color(Color32::from_rgb(r, g, b)));
+                    ui.label(RichText::new(means).color(Color32::WHITE));
+                    ui.end_row();
+                }
+            });
+        });
+    });
+    Ok(())
 }
 
 fn write(mut contexts: EguiContexts, help: Res<KeyHelp>, following: Res<FollowWorm>) -> Result {

@@ -12,26 +12,30 @@ mod ghost;
 mod half;
 mod help;
 mod light;
+mod meadow;
 mod offscreen;
 mod paint;
+mod peel;
 mod plain;
 mod quality;
 mod skins;
+mod strand;
 mod studio;
 mod window;
 mod worm;
 mod worm_parts;
 
-use bevy::{prelude::*, render::renderer::RenderAdapterInfo, winit::WinitPlugin};
+use bevy::{math::DVec3, prelude::*, render::renderer::RenderAdapterInfo, winit::WinitPlugin};
 
 pub use adapter::{AdapterSummary, NoAdapter, adapter, display_available};
 pub use camera::{CoveredLeft, FollowWorm, PointerOnPanel, SceneCamera};
 pub use help::KeyHelp;
 pub use offscreen::{Picture, Shot, ShotError};
+pub use peel::Peeled;
 pub use quality::Quality;
 pub use window::window_plugins;
 
-use crate::scenes::{CurrentScene, Props};
+use crate::scenes::{self, CurrentScene, Props};
 
 /// Draws bodies and their surroundings. Add it after `DefaultPlugins`.
 #[derive(Clone, Copy, Debug, Default)]
@@ -42,7 +46,7 @@ pub struct ViewPlugin {
 
 impl Plugin for ViewPlugin {
     fn build(&self, app: &mut App) {
-        app.add_plugins((paint::plugin, half::plugin, camera::plugin, skins::plugin, ghost::plugin))
+        app.add_plugins((paint::plugin, half::plugin, camera::plugin, skins::plugin, ghost::plugin, peel::plugin))
             .insert_resource(ClearColor(Color::srgb(0.72, 0.87, 0.95)))
             .add_systems(Update, decorate.run_if(resource_exists_and_changed::<CurrentScene>));
         if app.is_plugin_added::<WinitPlugin>() {
@@ -80,6 +84,13 @@ fn decorate(
     light::shine(*quality, &mut commands);
     match scene.file.props {
         Props::Garden { seed } => garden::plant(seed, *quality, &mut commands, &mut meshes, &mut paints),
-        Props::None => studio::set_up(*quality, &mut commands, &mut meshes, &mut paints),
+        Props::None => match &scene.file.ground {
+            Some(ground) => {
+                let scenes::Camera::Orbit { target: (x, y, z), .. } = scene.file.camera;
+                let middle = DVec3::new(x, y, z).as_vec3();
+                meadow::set_up(ground, middle, *quality, &mut commands, &mut meshes, &mut paints);
+            }
+            None => studio::set_up(*quality, &mut commands, &mut meshes, &mut paints),
+        },
     }
 }

@@ -30,6 +30,13 @@ pub(crate) struct Paint {
     /// Where along x it is open to the light, and half the width of what is dark beyond; zero for light everywhere.
     #[uniform(0)]
     pub shelter: Vec4,
+    /// Multiplies the vertex colours by where the vertices are on it; with a bump map only.
+    #[texture(1)]
+    #[sampler(2)]
+    pub color_map: Option<Handle<Image>>,
+    /// Turns the normals, in the directions of the vertices' tangents.
+    #[texture(3)]
+    pub bump_map: Option<Handle<Image>>,
     /// Whether it receives shadows from a shadow map.
     pub shadows: bool,
     /// Whether a vertex colour's fourth number is opacity and not the wind's reach.
@@ -45,6 +52,7 @@ pub(crate) struct PaintKey {
     sheer: u8,
     glows: u8,
     sheltered: u8,
+    mapped: u8,
 }
 
 impl From<&Paint> for PaintKey {
@@ -55,6 +63,7 @@ impl From<&Paint> for PaintKey {
             sheer: paint.sheer.into(),
             glows: (paint.finish.z > 0.5).into(),
             sheltered: (paint.shelter.z > 0.0).into(),
+            mapped: (paint.color_map.is_some() && paint.bump_map.is_some()).into(),
         }
     }
 }
@@ -62,7 +71,15 @@ impl From<&Paint> for PaintKey {
 impl Paint {
     /// Plain matte paint.
     pub fn matte(shadows: bool) -> Self {
-        Self { tint: Vec4::ONE, finish: Vec4::new(0.0, 0.0, 0.0, 1.0), shelter: Vec4::ZERO, shadows, sheer: false }
+        Self {
+            tint: Vec4::ONE,
+            finish: Vec4::new(0.0, 0.0, 0.0, 1.0),
+            shelter: Vec4::ZERO,
+            color_map: None,
+            bump_map: None,
+            shadows,
+            sheer: false,
+        }
     }
 
     /// Paint that shines, from 0 to 1.
@@ -117,6 +134,7 @@ impl Material for Paint {
             (paint.sheer, "SHEER"),
             (paint.glows, "GLOWS"),
             (paint.sheltered, "SHELTERED"),
+            (paint.mapped, "MAPPED"),
         ];
         for (_, name) in defined.iter().filter(|(on, _)| *on != 0) {
             descriptor.vertex.shader_defs.push((*name).into());

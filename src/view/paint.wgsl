@@ -22,6 +22,11 @@ struct Paint {
 }
 
 @group(#{MATERIAL_BIND_GROUP}) @binding(0) var<uniform> paint: Paint;
+#ifdef MAPPED
+@group(#{MATERIAL_BIND_GROUP}) @binding(1) var color_map: texture_2d<f32>;
+@group(#{MATERIAL_BIND_GROUP}) @binding(2) var map_sampler: sampler;
+@group(#{MATERIAL_BIND_GROUP}) @binding(3) var bump_map: texture_2d<f32>;
+#endif
 
 const SUN: vec3<f32> = vec3(1.95, 1.68, 1.25);
 const SKY: vec3<f32> = vec3(0.33, 0.45, 0.64);
@@ -50,6 +55,10 @@ fn vertex(in: Vertex) -> VertexOutput {
     out.position = position_world_to_clip(world.xyz);
     out.world_normal = mesh_functions::mesh_normal_local_to_world(in.normal, in.instance_index);
     out.color = in.color;
+#ifdef MAPPED
+    out.uv = in.uv;
+    out.world_tangent = mesh_functions::mesh_tangent_local_to_world(world_from_local, in.tangent, in.instance_index);
+#endif
 #ifdef VERTEX_OUTPUT_INSTANCE_INDEX
     out.instance_index = in.instance_index;
 #endif
@@ -69,7 +78,11 @@ fn tone(x: vec3<f32>) -> vec3<f32> {
 
 @fragment
 fn fragment(in: VertexOutput, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
-    let albedo = in.color.rgb * paint.tint.rgb;
+    var albedo = in.color.rgb * paint.tint.rgb;
+#ifdef MAPPED
+    albedo *= textureSample(color_map, map_sampler, in.uv).rgb;
+    let bump = textureSample(bump_map, map_sampler, in.uv).xyz * 2.0 - 1.0;
+#endif
     let to_eye = view.world_position - in.world_position.xyz;
     let distance = length(to_eye);
     var color = albedo;
@@ -77,6 +90,10 @@ fn fragment(in: VertexOutput, @builtin(front_facing) front: bool) -> @location(0
     {
         let eye = to_eye / distance;
         var normal = normalize(in.world_normal);
+#ifdef MAPPED
+        let across = in.world_tangent.w * cross(normal, in.world_tangent.xyz);
+        normal = normalize(bump.x * in.world_tangent.xyz + bump.y * across + bump.z * normal);
+#endif
 #ifndef BOTH_SIDES
         // Leaves and blades are seen from both sides; their normals point up and stay.
         if (!front) {

@@ -5,9 +5,9 @@ use bevy::{
     prelude::*,
 };
 
-use super::{paint::Paint, plain, quality::Quality, worm};
+use super::{paint::Paint, plain, quality::Quality, strand, worm};
 use crate::{
-    body::Springs,
+    body::{Springs, Strand},
     creatures::Look,
     physics::{PhysicsSystems, Shown},
     scenes::{CurrentScene, Props, Runner, garden},
@@ -16,7 +16,7 @@ use crate::{
 pub(super) fn plugin(app: &mut App) {
     app.init_resource::<Skins>().add_systems(
         RunFixedMainLoop,
-        (dress, worm::follow, plain::follow)
+        (dress, worm::follow, plain::follow, strand::follow, strand::follow_parts)
             .chain()
             .after(PhysicsSystems::Sync)
             .in_set(RunFixedMainLoopSystems::AfterFixedMainLoop),
@@ -35,17 +35,22 @@ struct Skins(EntityHashMap<(Entity, Look, usize, usize)>);
 struct Kits {
     worm: worm::WormKit,
     plain: plain::PlainKit,
+    strand: strand::StrandKit,
 }
 
-type Bodies<'w, 's> =
-    Query<'w, 's, (Entity, &'static Look, &'static Shown, Option<&'static Springs>, Option<&'static Runner>)>;
+type Bodies<'w, 's> = Query<
+    'w,
+    's,
+    (Entity, &'static Look, &'static Shown, Option<&'static Springs>, Option<&'static Strand>, Option<&'static Runner>),
+>;
 
 /// What skins are made from.
 #[derive(SystemParam)]
-struct Cloth<'w> {
-    quality: Res<'w, Quality>,
-    meshes: ResMut<'w, Assets<Mesh>>,
-    paints: ResMut<'w, Assets<Paint>>,
+pub(super) struct Cloth<'w> {
+    pub quality: Res<'w, Quality>,
+    pub meshes: ResMut<'w, Assets<Mesh>>,
+    pub paints: ResMut<'w, Assets<Paint>>,
+    pub images: ResMut<'w, Assets<Image>>,
 }
 
 fn dress(
@@ -63,7 +68,7 @@ fn dress(
         }
     }
     skins.0.retain(|&body, &mut (root, look, particles, springs)| {
-        let stays = bodies.get(body).is_ok_and(|(_, now, shown, held, _)| {
+        let stays = bodies.get(body).is_ok_and(|(_, now, shown, held, ..)| {
             (*now, shown.positions().len(), held.map_or(0, Springs::len)) == (look, particles, springs)
         });
         if !stays {
@@ -71,7 +76,7 @@ fn dress(
         }
         stays
     });
-    for (body, &look, shown, springs, runner) in &bodies {
+    for (body, &look, shown, springs, lattice, runner) in &bodies {
         let (particles, held) = (shown.positions().len(), springs.map_or(0, Springs::len));
         if particles == 0 || skins.0.contains_key(&body) {
             continue;
@@ -87,14 +92,19 @@ fn dress(
             Kits {
                 worm: worm::WormKit::new(&mut cloth.meshes, &mut cloth.paints, shadows, shelter),
                 plain: plain::PlainKit::new(&mut cloth.meshes, &mut cloth.paints, shadows),
+                strand: strand::StrandKit::default(),
             }
         });
-        let root = match look {
-            Look::GardenWorm if particles >= 2 => {
+        let lattice = lattice.filter(|lattice| lattice.particles() == particles);
+        let root = match (look, lattice) {
+            (Look::Strand(skin), Some(&lattice)) => {
+                strand::dress(body, lattice, skin, &mut kits.strand, &mut cloth, &mut commands)
+            }
+            (Look::GardenWorm, _) if particles >= 2 => {
                 let dye = runner.map(Runner::color).map(|[r, g, b]| Color::srgb_u8(r, g, b));
                 worm::dress(body, particles, dye, &kits.worm, &mut cloth.paints, &mut commands)
             }
-            Look::GardenWorm | Look::Plain => plain::dress(body, particles, springs, &kits.plain, &mut commands),
+            _ => plain::dress(body, particles, springs, &kits.plain, &mut commands),
         };
         skins.0.insert(body, (root, look, particles, held));
     }

@@ -4,7 +4,6 @@ mod support;
 
 mod animal;
 mod animals;
-
 mod chart;
 mod cli;
 mod clock;
@@ -26,6 +25,8 @@ mod panel;
 mod parameters;
 #[cfg(feature = "window")]
 mod picture;
+#[cfg(feature = "window")]
+mod picture_animals;
 mod race;
 mod saving;
 mod shows;

@@ -104,7 +104,7 @@ fn mean(points: &[Vec2]) -> Vec2 {
 }
 
 /// Whether there is an adapter to draw with. Says so where there is none, which is an error where graphics are required.
-fn can_draw() -> bool {
+pub fn can_draw() -> bool {
     let Err(missing) = adapter() else { return true };
     assert!(std::env::var_os("WRIGGLE_REQUIRE_GRAPHICS").is_none_or(|asked| asked != "1"), "{missing}");
     eprintln!("skipped what is drawn: {missing}");

@@ -31,7 +31,7 @@ pub(in crate::view) fn sky() -> Clay {
 }
 
 /// Heaps of soft balls with flat feet.
-pub(super) fn clouds(random: &mut SmallRng, quality: Quality) -> Clay {
+pub(in crate::view) fn clouds(random: &mut SmallRng, quality: Quality) -> Clay {
     let mut clay = Clay::default();
     for i in 0..13 {
         let around = TAU * (i as f32 + between(random, -0.3, 0.3)) / 13.0;
@@ -54,7 +54,7 @@ pub(super) fn clouds(random: &mut SmallRng, quality: Quality) -> Clay {
 }
 
 /// Two rows of hills, the further the paler.
-pub(super) fn hills(random: &mut SmallRng, quality: Quality) -> Clay {
+pub(in crate::view) fn hills(random: &mut SmallRng, quality: Quality) -> Clay {
     let mut clay = Clay::default();
     for (count, out, low, high, code) in [(15, 118.0, 8.0, 14.0, 0x6f9a6a_u32), (13, 84.0, 4.0, 8.0, 0x6fa54a)] {
         for i in 0..count {
