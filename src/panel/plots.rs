@@ -92,7 +92,7 @@ fn cost(ui: &mut egui::Ui, settings: &Settings, traces: &Traces) {
 /// The title of a plot, with the names of its lines in their colours.
 fn legend<'a>(ui: &mut egui::Ui, title: &str, names: impl IntoIterator<Item = &'a str>) {
     ui.add_space(4.0);
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
         ui.label(RichText::new(title).size(12.0));
         for (name, color) in names.into_iter().zip(SERIES) {
             let (stroke, _) = ui.allocate_exact_size(vec2(10.0, 3.0), Sense::hover());

@@ -11,6 +11,7 @@ use super::{
     garden::backdrop,
     paint::Paint,
     quality::Quality,
+    travel::Travels,
 };
 use crate::{
     body::{Ground, Patch, Surface},
@@ -21,6 +22,8 @@ use crate::{
 /// How far the ground is drawn finely from the middle of the view, and how far at all.
 const NEAR: f32 = 64.0;
 const FAR: [f32; 6] = [72.0, 84.0, 100.0, 130.0, 170.0, 240.0];
+/// A plain repeats itself after this length.
+const TILE: f32 = 96.0;
 /// Below this side grip a patch of the ground is sand, above it grass.
 const SANDY: f64 = 2.0;
 /// How high a wall is drawn, and how long.
@@ -37,25 +40,40 @@ pub(super) fn set_up(
 ) {
     let shadows = quality.shadows();
     let mut random = SmallRng::seed_from_u64(4);
-    let mut spawn = |clay: Clay, paint: Paint, casts: bool| {
+    // A plain looks the same a tile further on; what has edges, rounds and patches is one place.
+    let tile = if *ground == Ground::Flat { Some(TILE) } else { None };
+    let mut spawn = |clay: Clay, paint: Paint, casts: bool, travels: Option<f32>, places: &[Vec3]| {
         if clay.triangles() == 0 {
             return;
         }
-        let thing = (Mesh3d(meshes.add(clay.fire())), MeshMaterial3d(paints.add(paint)));
-        let mut thing = commands.spawn((SceneMember, Decor, NoFrustumCulling, thing));
-        if !casts {
-            thing.insert(NotShadowCaster);
+        let (mesh, paint) = (meshes.add(clay.fire()), paints.add(paint));
+        for &place in places {
+            let looks = (Mesh3d(mesh.clone()), MeshMaterial3d(paint.clone()), Transform::from_translation(place));
+            let root = (SceneMember, Decor, Transform::default(), Visibility::default());
+            let root = commands.spawn(root).id();
+            if let Some(length) = travels {
+                commands.entity(root).insert(Travels(length));
+            }
+            let mut thing = commands.spawn((NoFrustumCulling, looks, ChildOf(root)));
+            if !casts {
+                thing.insert(NotShadowCaster);
+            }
         }
     };
-    spawn(backdrop::sky(), Paint::glowing(), false);
+    let here = [Vec3::ZERO];
+    spawn(backdrop::sky(), Paint::glowing(), false, Some(0.0), &here);
     let haze = Paint { finish: Vec4::new(0.0, 0.0, 0.0, 0.25), ..Paint::matte(false) };
-    spawn(backdrop::clouds(&mut random, quality), haze, false);
-    spawn(backdrop::hills(&mut random, quality), Paint::matte(false), false);
-    spawn(land(ground, middle), Paint::matte(shadows), false);
-    spawn(walls(ground), Paint::matte(shadows), true);
+    spawn(backdrop::clouds(&mut random, quality), haze, false, Some(0.0), &here);
+    spawn(backdrop::hills(&mut random, quality), Paint::matte(false), false, Some(0.0), &here);
+    let middle = if tile.is_some() { Vec3::ZERO } else { middle };
+    spawn(land(ground, middle), Paint::matte(shadows), false, tile, &here);
+    spawn(walls(ground), Paint::matte(shadows), true, None, &here);
     let [leaves, stones] = scattered(ground, middle, quality, &mut random);
-    spawn(leaves, Paint::leafy(shadows), false);
-    spawn(stones, Paint::matte(shadows), true);
+    let around: Vec<_> =
+        (-1..=1).flat_map(|x| (-1..=1).map(move |z| Vec3::new(x as f32, 0.0, z as f32) * TILE)).collect();
+    let places = if tile.is_some() { &around[..] } else { &here };
+    spawn(leaves, Paint::leafy(shadows), false, tile, places);
+    spawn(stones, Paint::matte(shadows), true, tile, places);
 }
 
 /// The height of the ground at a spot, as it is seen from above.
@@ -107,9 +125,10 @@ fn color(ground: &Ground, x: f32, z: f32, up: f32) -> Tint {
         let ripple = (z * 2.4 + (x * 0.7).sin() * 0.8 + (x * 0.23 + z * 0.1).sin() * 2.0).sin() * 0.5 + 0.5;
         shade(blend(tint(0xd3b078), tint(0xe9d3a2), ripple), 0.62)
     } else {
-        let patch = (x * 0.35 + (z * 0.26).sin() * 1.3).sin() * (z * 0.31 + (x * 0.22).cos()).cos() * 0.5 + 0.5;
+        let (x, z) = (x * TAU / TILE, z * TAU / TILE);
+        let patch = (5.0 * x + (4.0 * z).sin() * 1.3).sin() * (5.0 * z + (3.0 * x).cos()).cos() * 0.5 + 0.5;
         // As the garden's lawn; tufts are brighter than what they stand on.
-        shade(blend(tint(0x467a30), tint(0x6f9c3e), patch), 0.66)
+        shade(blend(tint(0x4c7838), tint(0x7a9a50), patch), 0.66)
     };
     let strata = (x * 1.7 + z * 0.35).sin() * 0.5 + 0.5;
     let rock = shade(blend(tint(0x9a8266), tint(0xb79f80), strata), 0.7);
@@ -188,7 +207,8 @@ fn scattered(ground: &Ground, middle: Vec3, quality: Quality, random: &mut Small
     let (mut leaves, mut stones) = (Clay::default(), Clay::default());
     let count = if quality == Quality::Low { 700 } else { 4000 };
     for i in 0..count {
-        let (x, z) = (middle.x + random.random_range(-48.0..48.0), middle.z + random.random_range(-40.0..40.0));
+        let (x, z) =
+            (middle.x + random.random_range(-0.5..0.5) * TILE, middle.z + random.random_range(-0.5..0.5) * TILE);
         let foot = Vec3::new(x, height(ground, x, z), z);
         let up = match ground {
             Ground::Flat => 1.0,

@@ -21,6 +21,7 @@ mod quality;
 mod skins;
 mod strand;
 mod studio;
+mod travel;
 mod window;
 mod worm;
 mod worm_parts;
@@ -46,9 +47,17 @@ pub struct ViewPlugin {
 
 impl Plugin for ViewPlugin {
     fn build(&self, app: &mut App) {
-        app.add_plugins((paint::plugin, half::plugin, camera::plugin, skins::plugin, ghost::plugin, peel::plugin))
-            .insert_resource(ClearColor(Color::srgb(0.72, 0.87, 0.95)))
-            .add_systems(Update, decorate.run_if(resource_exists_and_changed::<CurrentScene>));
+        app.add_plugins((
+            paint::plugin,
+            half::plugin,
+            camera::plugin,
+            skins::plugin,
+            ghost::plugin,
+            peel::plugin,
+            travel::plugin,
+        ))
+        .insert_resource(ClearColor(Color::srgb(0.72, 0.87, 0.95)))
+        .add_systems(Update, decorate.run_if(resource_exists_and_changed::<CurrentScene>));
         if app.is_plugin_added::<WinitPlugin>() {
             app.add_plugins(help::plugin);
         }

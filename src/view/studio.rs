@@ -1,6 +1,6 @@
 //! The surroundings of a scene without props: a chequered floor under an open sky.
 
-use bevy::{light::NotShadowCaster, prelude::*};
+use bevy::{camera::visibility::NoFrustumCulling, light::NotShadowCaster, prelude::*};
 
 use super::{
     Decor,
@@ -8,6 +8,7 @@ use super::{
     garden::backdrop,
     paint::Paint,
     quality::Quality,
+    travel::Travels,
 };
 use crate::scenes::SceneMember;
 
@@ -31,9 +32,11 @@ pub(super) fn set_up(quality: Quality, commands: &mut Commands, meshes: &mut Ass
         SceneMember,
         Decor,
         NotShadowCaster,
+        // Two tiles on, it looks the same.
+        Travels(2.0),
         Mesh3d(meshes.add(floor.fire())),
         MeshMaterial3d(floor_paint),
     ));
     let sky = (Mesh3d(meshes.add(backdrop::sky().fire())), MeshMaterial3d(paints.add(Paint::glowing())));
-    commands.spawn((SceneMember, Decor, NotShadowCaster, sky));
+    commands.spawn((SceneMember, Decor, NotShadowCaster, NoFrustumCulling, Travels(0.0), sky));
 }

@@ -52,7 +52,8 @@ fn every_animal_is_seen_where_its_masses_are_and_nowhere_else() {
         let (mut shot, bodies) = scene(name, 4.2);
         let with = shot.picture().expect("the renderer gives a picture");
         if let Some(folder) = std::env::var_os("WRIGGLE_KEEP_PICTURES") {
-            with.save(&std::path::Path::new(&folder).join(format!("{name}.png"))).expect("the folder can be written to");
+            with.save(&std::path::Path::new(&folder).join(format!("{name}.png")))
+                .expect("the folder can be written to");
         }
         let world = shot.world_mut();
         let all: Vec<_> = world.query_filtered::<Entity, With<Shown>>().iter(world).collect();
