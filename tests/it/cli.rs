@@ -148,7 +148,7 @@ fn a_bad_file_is_reported_with_its_place() {
 
 #[test]
 fn a_frozen_body_is_said_and_exits_with_1() {
-    let output = wriggle(&["run", "four-worms", "--dt", "2", "--for", "200", "--json"]);
+    let output = wriggle(&["run", "four-worms", "--dt", "2", "--for", "200", "--method", "ExplicitEuler", "--json"]);
     assert_eq!(output.status.code(), Some(1));
     let said = stderr(&output);
     assert!(said.contains("stability limit of `plain`") && said.contains("plain: particle"), "{said}");

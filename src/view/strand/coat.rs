@@ -79,7 +79,8 @@ impl Coat {
         match self {
             Self::Worm => {
                 let ring = (core::f32::consts::PI * 4.0 * v).sin().abs().sqrt();
-                let wrinkle = (62.0 * v + 3.0 * (12.6 * u).sin()).sin() * (25.1 * u + 5.0 * (6.3 * v).sin()).sin();
+                let (u, v) = (core::f32::consts::TAU * u, core::f32::consts::TAU * v);
+                let wrinkle = (10.0 * v + 3.0 * (2.0 * u).sin()).sin() * (4.0 * u + 5.0 * v.sin()).sin();
                 0.045 * ring + 0.004 * wrinkle
             }
             Self::Snake | Self::Sidewinder => {

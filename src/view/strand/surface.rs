@@ -204,7 +204,7 @@ mod tests {
     #[test]
     fn normals_point_out_of_a_bent_body_and_are_square_to_its_tangents() {
         let bend = |at: Vec3| {
-            let turn = Quat::from_rotation_y(-at.x * PI / 20.0);
+            let turn = Quat::from_rotation_y(at.x * PI / 20.0);
             turn * Vec3::new(0.0, at.y, at.z + 6.0)
         };
         let masses: Vec<_> = straight(10, 1.0).into_iter().map(bend).collect();
