@@ -521,13 +521,14 @@ fn steps_that_jitter_feed_energy_into_what_equal_steps_keep() {
     // Plain Verlet takes the way of one step for that of another.
     let (least, ..) = growths(&|jitter| jitter.growth_of_verlet(false));
     assert!(least > 1e12, "× {least}");
-    let symmetric: [(&str, &dyn Fn(&Jitter) -> f64); 3] = [
-        ("Störmer–Verlet as drift, kick, drift", &|jitter| jitter.growth(Method::StormerVerlet)),
-        ("time-corrected Verlet", &|jitter| jitter.growth_of_verlet(true)),
-        ("kick, drift, kick", &Jitter::growth_of_kick_drift_kick),
+    type Growth = fn(&Jitter) -> f64;
+    let symmetric: [(&str, Growth); 3] = [
+        ("Störmer–Verlet as drift, kick, drift", |jitter| jitter.growth(Method::StormerVerlet)),
+        ("time-corrected Verlet", |jitter| jitter.growth_of_verlet(true)),
+        ("kick, drift, kick", Jitter::growth_of_kick_drift_kick),
     ];
     for (name, of) in symmetric {
-        let (least, mean, most) = growths(of);
+        let (least, mean, most) = growths(&of);
         assert!(least > 0.2 && (0.5..2.0).contains(&mean) && most < 5.0, "{name}: × {least}, {mean}, {most}");
     }
     // Equal steps keep what they began with, each method within its bounds.
