@@ -12,7 +12,10 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use super::{CliError, Outcome};
 use crate::{
     creatures::library::{self, SCENE},
-    lab::{Gallery, GalleryError, LabError, Problem, SweepOptions, WorkPrecision, measure, resumed_sweep},
+    lab::{
+        Gallery, GalleryError, LabError, Problem, StiffnessStudy, SweepOptions, WorkPrecision, chart::stiffness,
+        factors, measure, resumed_sweep, stiffness_study, study_stem,
+    },
     mechanics::integrators::Method,
     scenes::{self, LoadedScene},
 };
@@ -21,10 +24,11 @@ use crate::{
 pub(super) struct ChartArguments {
     /// Scenes or creatures by name, or files [default: every scene that `wriggle list` shows]
     scene: Vec<String>,
-    /// The folder for NAME.csv, NAME.svg, NAME.png and NAME.json of each scene and for index.html; made if it is not there
+    /// The folder for NAME.csv, NAME.svg, NAME.png and NAME.json of each scene, the same of NAME-stiffness, and for index.html; made if
+    /// it is not there
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
-    /// Fewer steps of each method and fewer timed runs
+    /// Fewer steps of each method, fewer stiffnesses and fewer timed runs
     #[arg(long)]
     quick: bool,
 }
@@ -61,6 +65,9 @@ pub(super) fn chart(arguments: &ChartArguments) -> Result<Outcome, CliError> {
         let how = if is_new { "measured" } else { "measured before" };
         let file = gallery.file(name, "svg");
         writeln!(out, "{name}: {} runs, {how}; {}", chart.points.len(), file.display()).map_err(CliError::stdout)?;
+        let (study, how) = studied(&problem, &options, &gallery, &key)?;
+        let (verdict, file) = (stiffness::verdict(&study), gallery.file(&study_stem(name), "svg"));
+        writeln!(out, "{name}: {verdict} {how}; {}", file.display()).map_err(CliError::stdout)?;
     }
     let page = gallery.write_page()?;
     writeln!(out, "all charts: {}", page.display()).and_then(|()| out.flush()).map_err(CliError::stdout)?;
@@ -83,6 +90,12 @@ fn loaded(names: &[String]) -> Result<BTreeMap<String, LoadedScene>, CliError> {
                 other.source
             )));
         }
+    }
+    if let Some(name) = scenes.keys().find(|name| scenes.contains_key(&study_stem(name))) {
+        return Err(CliError::Usage(format!(
+            "{}: the files of its chart would have the same names as those of the stiffness of `{name}`; chart it into another folder",
+            study_stem(name)
+        )));
     }
     Ok(scenes)
 }
@@ -128,6 +141,34 @@ fn measured(
     })?;
     bar.finish_and_clear();
     Ok(chart)
+}
+
+/// The study of stiffness of a scene, and whether it was measured now.
+fn studied(
+    problem: &Problem,
+    options: &SweepOptions,
+    gallery: &Gallery,
+    key: &str,
+) -> Result<(StiffnessStudy, &'static str), CliError> {
+    let key = format!("{key} stiffness {:?}", factors(options.quick));
+    let finished = gallery.finished_study(&problem.name, &key);
+    let how = if finished.is_some() { "Measured before" } else { "Measured" };
+    if let Some(study) = finished {
+        if !gallery.is_study_drawn(&problem.name) {
+            gallery.keep_study(&key, &study)?;
+        }
+        return Ok((study, how));
+    }
+    let bar = progress(&problem.name);
+    let study = stiffness_study(problem, options, &mut |done, all, what| {
+        bar.set_length(all as u64);
+        bar.set_position(done as u64);
+        bar.set_message(what.to_owned());
+    })?;
+    bar.finish_and_clear();
+    gallery.keep_study(&key, &study)?;
+    gallery.write_page()?;
+    Ok((study, how))
 }
 
 /// Shown on a terminal only.

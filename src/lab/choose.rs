@@ -170,7 +170,7 @@ fn follow(
 }
 
 /// The steps to try, from half of the stability limit down in fourths of octaves, in round numbers.
-fn steps(problem: &Problem, method: Method, stick: StickRule) -> Vec<f64> {
+pub(super) fn steps(problem: &Problem, method: Method, stick: StickRule) -> Vec<f64> {
     const A_STEP: f64 = 0.840_896_415_253_714_5; // 2^(−¼)
     let without_limit = problem.period.unwrap_or(problem.duration / 10.0) / 8.0;
     let largest = (0.5 * problem.stability_limit(method, stick)).min(without_limit);
@@ -178,7 +178,8 @@ fn steps(problem: &Problem, method: Method, stick: StickRule) -> Vec<f64> {
         return Vec::new();
     }
     let down = core::iter::successors(Some(largest), |dt| Some(dt * A_STEP));
-    let mut steps: Vec<_> = down.take_while(|&dt| dt > 0.25 * DOCUMENT.dt).map(rounded_down).collect();
+    let least = (0.25 * DOCUMENT.dt).min(0.1 * largest);
+    let mut steps: Vec<_> = down.take_while(|&dt| dt > least).map(rounded_down).collect();
     steps.dedup();
     steps
 }
@@ -188,6 +189,14 @@ fn rounded_down(dt: f64) -> f64 {
     let unit = libm::pow(10.0, libm::floor(libm::log10(dt)) - 1.0);
     // Read back from its digits, it is the number that one would write.
     format!("{:.1e}", (dt / unit + 1e-9).floor() * unit).parse().unwrap_or(dt)
+}
+
+/// The largest error of any position over the step and 0.9 and 0.8 of it; `None` where one of them blows up.
+pub(super) fn worst_error(problem: &Problem, reference: &Reference, setting: Setting) -> Option<f64> {
+    [1.0, 0.9, 0.8].into_iter().try_fold(0.0, |worst, part| {
+        let errors = errors(problem, reference, Setting { dt: part * setting.dt, ..setting })?;
+        Some(f64::max(worst, errors.largest))
+    })
 }
 
 /// What candidates are judged with.
@@ -200,10 +209,7 @@ struct Judge<'a> {
 
 impl Judge<'_> {
     fn candidate(&self, setting: Setting) -> Candidate {
-        let error = [1.0, 0.9, 0.8].into_iter().try_fold(0.0, |worst, part| {
-            let errors = errors(self.problem, self.reference, Setting { dt: part * setting.dt, ..setting })?;
-            Some(f64::max(worst, errors.largest))
-        });
+        let error = worst_error(self.problem, self.reference, setting);
         Candidate { setting, error, cost: self.cost(setting) }
     }
 

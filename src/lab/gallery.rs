@@ -5,15 +5,15 @@ use std::{
     path::{Path, PathBuf},
 };
 
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use thiserror::Error;
 
 use super::{
-    Partial, WorkPrecision,
+    Partial, StiffnessStudy, WorkPrecision,
     chart::{self, ChartError},
     csv,
     machine::machine,
-    page,
+    page, stiffness_csv,
 };
 use crate::scenes::write;
 
@@ -84,13 +84,24 @@ impl Gallery {
 
     /// The chart of a scene, if it was kept whole and with the same `problem`.
     pub fn finished(&self, scene: &str, problem: &str) -> Option<WorkPrecision> {
-        let kept = read(&self.file(scene, "json"))?;
+        let kept: Kept<WorkPrecision> = read(&self.file(scene, "json"))?;
+        (kept.problem == problem && kept.chart.scene == scene).then_some(kept.chart)
+    }
+
+    /// The study of stiffness of a scene, if it was kept whole and with the same `problem`.
+    pub fn finished_study(&self, scene: &str, problem: &str) -> Option<StiffnessStudy> {
+        let kept: Kept<StiffnessStudy> = read(&self.file(&study_stem(scene), "json"))?;
         (kept.problem == problem && kept.chart.scene == scene).then_some(kept.chart)
     }
 
     /// Whether the table and the pictures of a scene are there.
     pub fn is_drawn(&self, scene: &str) -> bool {
         ["csv", "svg", "png"].iter().all(|suffix| self.file(scene, suffix).is_file())
+    }
+
+    /// Whether the table and the pictures of a scene's study of stiffness are there.
+    pub fn is_study_drawn(&self, scene: &str) -> bool {
+        self.is_drawn(&study_stem(scene))
     }
 
     /// Goes on with the sweep of a scene that was interrupted, or begins one.
@@ -110,13 +121,8 @@ impl Gallery {
     /// # Errors
     /// If the chart cannot be drawn or a file cannot be written; what was there before is still there then.
     pub fn keep(&self, problem: &str, chart: &WorkPrecision) -> Result<(), GalleryError> {
-        self.write(&self.file(&chart.scene, "csv"), csv(chart).as_bytes())?;
-        self.write(&self.file(&chart.scene, "svg"), chart::svg(chart)?.as_bytes())?;
-        self.write(&self.file(&chart.scene, "png"), &chart::png(chart)?)?;
-        let file = self.file(&chart.scene, "json");
-        let json = serde_json::to_vec_pretty(&Kept { problem: problem.into(), chart })
-            .map_err(|error| GalleryError::File { file: file.clone(), error: error.into() })?;
-        self.write(&file, &json)?;
+        let [svg, png] = [chart::svg(chart)?.into_bytes(), chart::png(chart)?];
+        self.keep_files(&chart.scene, [csv(chart).into_bytes(), svg, png], &Kept { problem: problem.into(), chart })?;
         // What was left of an interrupted sweep is in the chart now.
         match fs::remove_file(self.part(&chart.scene)) {
             Err(error) if error.kind() != io::ErrorKind::NotFound => {
@@ -126,23 +132,44 @@ impl Gallery {
         }
     }
 
+    /// Keeps a study of stiffness as `NAME-stiffness.csv` and so on, as [`Gallery::keep`] does with a chart.
+    ///
+    /// # Errors
+    /// If it cannot be drawn or a file cannot be written; what was there before is still there then.
+    pub fn keep_study(&self, problem: &str, study: &StiffnessStudy) -> Result<(), GalleryError> {
+        let [svg, png] = [chart::stiffness::svg(study)?.into_bytes(), chart::stiffness::png(study)?];
+        let kept = Kept { problem: problem.into(), chart: study };
+        self.keep_files(&study_stem(&study.scene), [stiffness_csv(study).into_bytes(), svg, png], &kept)
+    }
+
+    /// Writes a table, the pictures and last what they are made from.
+    fn keep_files(&self, stem: &str, files: [Vec<u8>; 3], kept: &impl Serialize) -> Result<(), GalleryError> {
+        for (suffix, bytes) in ["csv", "svg", "png"].into_iter().zip(files) {
+            self.write(&self.file(stem, suffix), &bytes)?;
+        }
+        let file = self.file(stem, "json");
+        let json = serde_json::to_vec_pretty(kept)
+            .map_err(|error| GalleryError::File { file: file.clone(), error: error.into() })?;
+        self.write(&file, &json)
+    }
+
     /// Writes `index.html` with all charts of the folder, by name, and says where it is.
     ///
     /// # Errors
     /// If a chart cannot be drawn or the file cannot be written.
     pub fn write_page(&self) -> Result<PathBuf, GalleryError> {
-        let mut charts: Vec<_> = fs::read_dir(&self.folder)
-            .into_iter()
-            .flatten()
-            .flatten()
-            .map(|entry| entry.path())
-            .filter(|path| path.extension().is_some_and(|extension| extension == "json"))
-            .filter_map(|path| Some(read(&path)?.chart))
-            .collect();
+        let mut charts: Vec<WorkPrecision> = self.all_kept();
         charts.sort_by(|a, b| a.scene.cmp(&b.scene));
         let file = self.folder.join("index.html");
-        self.write(&file, page(&charts)?.as_bytes())?;
+        self.write(&file, page(&charts, &self.all_kept())?.as_bytes())?;
         Ok(file)
+    }
+
+    /// All that was kept of one kind; a file of the other is none of it.
+    fn all_kept<Chart: DeserializeOwned>(&self) -> Vec<Chart> {
+        let entries = fs::read_dir(&self.folder).into_iter().flatten().flatten().map(|entry| entry.path());
+        let files = entries.filter(|path| path.extension().is_some_and(|extension| extension == "json"));
+        files.filter_map(|path| Some(read::<Chart>(&path)?.chart)).collect()
     }
 
     fn write(&self, file: &Path, bytes: &[u8]) -> Result<(), GalleryError> {
@@ -150,7 +177,12 @@ impl Gallery {
     }
 }
 
+/// What the files of a scene's study of stiffness are called, without their ends.
+pub fn study_stem(scene: &str) -> String {
+    format!("{scene}-stiffness")
+}
+
 /// A chart that was kept; a damaged or foreign file is none.
-fn read(file: &Path) -> Option<Kept<WorkPrecision>> {
+fn read<Chart: DeserializeOwned>(file: &Path) -> Option<Kept<Chart>> {
     serde_json::from_slice(&fs::read(file).ok()?).ok()
 }

@@ -14,18 +14,23 @@ mod problem;
 mod record;
 mod reference;
 mod run;
+mod stiffness;
 mod sweep;
 mod table;
 
 pub use cache::Cache;
 pub use choose::{Candidate, Choice, Search, cheapest, choose, frontier};
 pub use error::LabError;
-pub use gallery::{Gallery, GalleryError};
+pub use gallery::{Gallery, GalleryError, study_stem};
 pub use page::page;
 pub use partial::Partial;
 pub use problem::{Problem, ProblemBody};
 pub use record::{Errors, Point, Setting, WorkPrecision};
 pub use reference::{Reference, StickSlip};
 pub use run::measure;
+pub use stiffness::{
+    Crossing, STIFFNESS_COLUMNS, StiffRun, StiffScene, StiffnessStudy, crossing, crossing_of, factors, is_implicit,
+    stiffened, stiffness_csv, stiffness_study, studied_methods,
+};
 pub use sweep::{SweepOptions, resumed_sweep, sweep, work_precision};
 pub use table::{COLUMNS, csv};

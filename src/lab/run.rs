@@ -163,7 +163,7 @@ fn compare<'r, const D: usize>(
 }
 
 /// The centre of mass; of particles that have none, the mean of their positions.
-fn center(body: &ProblemBody, positions: &[DVec3]) -> DVec3 {
+pub(super) fn center(body: &ProblemBody, positions: &[DVec3]) -> DVec3 {
     let masses = body.particles.masses();
     let total: f64 = masses.iter().sum();
     if total == 0.0 {

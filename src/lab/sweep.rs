@@ -38,7 +38,7 @@ impl SweepOptions {
     }
 
     /// How many spring updates one run may take.
-    fn most_work(&self) -> f64 {
+    pub(super) fn most_work(&self) -> f64 {
         if self.quick { 1e8 } else { 1e9 }
     }
 }

@@ -43,6 +43,6 @@ pub fn csv(chart: &WorkPrecision) -> String {
 }
 
 /// A cell, in quotes where it would be taken for more than one.
-fn quoted(cell: &str) -> String {
+pub(super) fn quoted(cell: &str) -> String {
     if cell.contains([',', '"', '\r', '\n']) { format!("\"{}\"", cell.replace('"', "\"\"")) } else { cell.into() }
 }

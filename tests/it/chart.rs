@@ -126,7 +126,7 @@ fn distance_from(guide: &Guide, (x, y): Place) -> f64 {
 }
 
 /// The middles of the polygons of a colour in an SVG, in pixels of the picture.
-fn marks(svg: &str, color: [u8; 3]) -> Vec<Place> {
+pub fn marks(svg: &str, color: [u8; 3]) -> Vec<Place> {
     let [r, g, b] = color;
     let fill = format!("fill=\"#{r:02X}{g:02X}{b:02X}\"");
     let polygons = svg.lines().filter(|line| line.starts_with("<polygon") && line.contains(&fill));
@@ -245,7 +245,7 @@ fn settings_and_real_time_are_where_they_were_measured_or_said() {
 }
 
 /// All glyphs are in the bundled font, nothing is smaller than 12 pixels, outside of the picture or over another text.
-fn check_texts(picture: &Picture) {
+pub fn check_texts(picture: &Picture) {
     let font = FontRef::try_from_slice(epaint_default_fonts::UBUNTU_LIGHT).unwrap();
     let all = Rect { left: 0.0, top: 0.0, right: Picture::WIDTH, bottom: Picture::HEIGHT };
     let texts: Vec<&Text> = picture.texts().collect();
@@ -289,7 +289,7 @@ fn no_number_spoils_a_chart() {
         }
         let svg = chart::svg(&chart).unwrap();
         assert!(!svg.contains(|letter: char| letter.is_control() && letter != '\n'));
-        page(&[chart]).unwrap();
+        page(&[chart], &[]).unwrap();
     }
 }
 

@@ -52,7 +52,7 @@ fn the_page_escapes_what_it_shows_and_needs_nothing_from_elsewhere() {
         machine: bad.into(),
         ..full()
     };
-    let html = page(&[chart, empty()]).unwrap();
+    let html = page(&[chart, empty()], &[]).unwrap();
     assert!(!html.contains("<script") && html.contains("&lt;script&gt;"));
     assert!(html.contains("href=\"./a%20b%22c.csv\""));
     for (at, _) in html.match_indices("http") {
@@ -64,7 +64,7 @@ fn the_page_escapes_what_it_shows_and_needs_nothing_from_elsewhere() {
         html.matches("blew up</td>").count(),
         full().points.iter().filter(|point| point.errors.is_none()).count()
     );
-    assert!(page(&[]).unwrap().contains("No scene has been measured yet"));
+    assert!(page(&[], &[]).unwrap().contains("No scene has been measured yet"));
 }
 
 fn files(folder: &Path) -> Vec<String> {
@@ -149,7 +149,11 @@ fn the_command_measures_a_scene_once() {
     assert!(String::from_utf8_lossy(&output.stdout).contains("runs, measured;"));
     assert!(output.stderr.is_empty(), "no bar in a pipe: {}", String::from_utf8_lossy(&output.stderr));
     let charts = folder.path().join("charts");
-    assert_eq!(files(&charts), ["index.html", "pair.csv", "pair.json", "pair.png", "pair.svg"]);
+    let of = |stem: &str| ["csv", "json", "png", "svg"].map(|suffix| format!("{stem}.{suffix}"));
+    let written = [vec!["index.html".to_owned()], of("pair-stiffness").into(), of("pair").into()].concat();
+    assert_eq!(files(&charts), written);
+    assert!(String::from_utf8_lossy(&output.stdout).contains("cheapest"), "which method stiffness favours is said");
+    let stiffness = fs::read_to_string(charts.join("pair-stiffness.csv")).unwrap();
     let table = fs::read_to_string(charts.join("pair.csv")).unwrap();
     for method in Method::ALL {
         assert!(table.contains(&format!("pair,{},", method.name())), "no run of {}", method.name());
@@ -157,6 +161,7 @@ fn the_command_measures_a_scene_once() {
     let output = run(folder.path(), &arguments);
     assert!(String::from_utf8_lossy(&output.stdout).contains("runs, measured before;"));
     assert_eq!(fs::read_to_string(charts.join("pair.csv")).unwrap(), table);
+    assert_eq!(fs::read_to_string(charts.join("pair-stiffness.csv")).unwrap(), stiffness);
 }
 
 #[test]

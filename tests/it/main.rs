@@ -32,5 +32,6 @@ mod saving;
 mod shows;
 mod stability;
 mod strand;
+mod stiffness;
 mod sync;
 mod watch;

@@ -1,10 +1,10 @@
 //! Draws the panels of a chart.
 
 use super::{
+    axes,
     labels::Placer,
     look::{regular, star},
     plot::{Panel, Plot},
-    scale::Tick,
     series::{Cost, Series, error},
     shapes::{Color, Picture, Place, Rect},
     text::{Anchor, Text},
@@ -21,14 +21,11 @@ pub(super) const STAR: f64 = 13.0;
 pub(super) const CIRCLE: f64 = 12.0;
 /// The em of what is written at marks and lines.
 pub(super) const SMALL: f64 = 12.5;
-const TICK_SIZE: f64 = 14.0;
 
 pub(super) const BLACK: Color = [0; 3];
 pub(super) const GREY: Color = [0x66; 3];
 pub(super) const BUDGET: Color = [0xdf, 0xef, 0xe6];
 pub(super) const BUDGET_EDGE: Color = [0x3d, 0x7a, 0x5c];
-const GRID: Color = [0xdc; 3];
-const FAINT_GRID: Color = [0xf0; 3];
 pub(super) const GUIDE: Color = [0x9a; 3];
 pub(super) const STAR_FILL: Color = [0xf0, 0xe4, 0x42];
 
@@ -52,8 +49,7 @@ pub(super) fn draw(picture: &mut Picture, chart: &WorkPrecision, plot: &Plot, pa
         picture.line([(x, panel.frame.top), (x, panel.frame.bottom)], GREY, 2.2);
         placer.take(Rect { left: x - 3.0, right: x + 3.0, ..panel.frame });
     }
-    let frame = panel.frame.corners();
-    picture.line([frame[0], frame[1], frame[2], frame[3], frame[0]], [0x80; 3], 1.2);
+    axes::border(picture, panel.frame);
 
     let series = || plot.series.iter().map(|series| (series, places(panel, series)));
     for (series, places) in series() {
@@ -79,57 +75,17 @@ pub(super) fn places(panel: &Panel, series: &Series) -> Vec<Place> {
 
 fn grid(picture: &mut Picture, plot: &Plot, panel: &Panel, first: bool) {
     let frame = panel.frame;
-    let color = |tick: &Tick| if tick.digit == 1 { GRID } else { FAINT_GRID };
-    for tick in panel.x.ticks() {
-        let x = panel.x.place(tick.value);
-        picture.line([(x, frame.top), (x, frame.bottom)], color(&tick), 1.0);
-        if tick.written {
-            picture.line([(x, frame.bottom), (x, frame.bottom + 5.0)], [0x80; 3], 1.2);
-            number(picture, tick, (x, frame.bottom + 22.0), Anchor::Middle);
-        }
-    }
-    for tick in panel.y.ticks() {
-        let y = panel.y.place(tick.value);
-        picture.line([(frame.left, y), (frame.right, y)], color(&tick), 1.0);
-        if tick.written && first {
-            picture.line([(frame.left - 5.0, y), (frame.left, y)], [0x80; 3], 1.2);
-            number(picture, tick, (frame.left - 9.0, y + 5.0), Anchor::End);
-        }
-    }
-    if plot.exact && first {
-        let y = panel.place(1.0, 0.0).1;
-        picture.text(Text::new("0", (frame.left - 9.0, y + 5.0), TICK_SIZE).anchored(Anchor::End));
-    }
     let title = match panel.cost {
         Cost::Evaluations => "force evaluations",
         Cost::Seconds => "seconds: shortest run, bar to the median",
     };
-    let middle = (frame.left + frame.right) / 2.0;
-    picture.text(Text::new(title, (middle, frame.bottom + 46.0), 16.0).anchored(Anchor::Middle));
-    if first {
-        let at = (frame.left - 66.0, (frame.top + frame.bottom) / 2.0);
-        let title = Text::new("error: largest distance from the reference, in lengths", at, 16.0);
-        picture.text(Text { upwards: true, ..title }.anchored(Anchor::Middle));
+    axes::across(picture, frame, &panel.x, title);
+    let title = first.then_some("error: largest distance from the reference, in lengths");
+    axes::upwards(picture, frame, &panel.y, title);
+    if plot.exact && first {
+        let y = panel.place(1.0, 0.0).1;
+        picture.text(Text::new("0", (frame.left - 9.0, y + 5.0), axes::TICK_SIZE).anchored(Anchor::End));
     }
-}
-
-/// Writes a digit times a power of ten. The exponent is a text of its own, because the bundled font has no raised minus.
-fn number(picture: &mut Picture, tick: Tick, (x, y): Place, anchor: Anchor) {
-    let base = match tick.digit {
-        1 => "10".to_owned(),
-        digit => format!("{digit}·10"),
-    };
-    let base = Text::new(base, (x, y), TICK_SIZE);
-    let power = Text::new(tick.exponent.to_string().replace('-', "−"), (x, y - 6.0), 12.0);
-    let width = |text: &Text| text.bounds().right - text.bounds().left;
-    let (base_width, power_width) = (width(&base), width(&power));
-    let split = match anchor {
-        Anchor::Start => x + base_width,
-        Anchor::Middle => x + (base_width - power_width) / 2.0,
-        Anchor::End => x - power_width,
-    };
-    picture.text(Text { at: (split, y), ..base }.anchored(Anchor::End));
-    picture.text(Text { at: (split + 1.0, y - 6.0), ..power });
 }
 
 fn strip(picture: &mut Picture, plot: &Plot, panel: &Panel, first: bool) {

@@ -11,24 +11,27 @@ use crate::{lab::WorkPrecision, mechanics::integrators::Method, scenes::DOCUMENT
 
 const CAPTION_SIZE: f64 = 13.0;
 const CAPTION_LINE: f64 = 18.0;
-const MARGIN: f64 = 28.0;
+pub(super) const MARGIN: f64 = 28.0;
 /// Where the legend is.
-const LEFT: f64 = 1270.0;
-const SAMPLE: f64 = 44.0;
+pub(super) const LEFT: f64 = 1270.0;
+/// How wide the sample of a line is.
+pub(super) const SAMPLE: f64 = 44.0;
 
 /// The room that is left for the panels by a caption of so many lines.
 pub(super) fn room(caption: &[String]) -> Room {
-    let bottom = Picture::HEIGHT - MARGIN - CAPTION_LINE * caption.len() as f64 - 64.0;
     let (left, gap) = (108.0, 38.0);
     let width = (LEFT - 30.0 - left - gap) / 2.0;
-    Room { lefts: [left, left + width + gap], width, top: 92.0, bottom }
+    Room { lefts: [left, left + width + gap], width, top: 92.0, bottom: bottom(caption) }
+}
+
+/// Where frames end above a caption of so many lines.
+pub(super) fn bottom(caption: &[String]) -> f64 {
+    Picture::HEIGHT - MARGIN - CAPTION_LINE * caption.len() as f64 - 64.0
 }
 
 /// What stands below a chart, in lines.
 pub(super) fn caption(chart: &WorkPrecision) -> Vec<String> {
-    // An SVG may be shown in a wider font than the bundled one.
-    let width = 0.87 * (Picture::WIDTH - 2.0 * MARGIN);
-    let sentences = [
+    lines(&[
         format!(
             "Friction acts in the stages of a method unless its name says “at end”. Arithmetic in f64. Real time, in which the app \
              shows these {} units of time: {} s.",
@@ -41,7 +44,13 @@ pub(super) fn caption(chart: &WorkPrecision) -> Vec<String> {
             short(chart.reference_error)
         ),
         chart.machine.clone(),
-    ];
+    ])
+}
+
+/// Sentences as lines of a caption.
+pub(super) fn lines(sentences: &[String]) -> Vec<String> {
+    // An SVG may be shown in a wider font than the bundled one.
+    let width = 0.87 * (Picture::WIDTH - 2.0 * MARGIN);
     let mut lines: Vec<_> = sentences.iter().flat_map(|text| wrap(text, CAPTION_SIZE, width)).collect();
     lines.truncate(6);
     lines
@@ -49,21 +58,26 @@ pub(super) fn caption(chart: &WorkPrecision) -> Vec<String> {
 
 /// Draws the words around the panels.
 pub(super) fn draw(picture: &mut Picture, chart: &WorkPrecision, plot: &Plot, caption: &[String]) {
-    let title = wrap(&format!("{}: what accuracy costs", chart.title), 26.0, Picture::WIDTH - 2.0 * MARGIN);
-    if let Some(line) = title.first() {
-        picture.text(Text::new(line.clone(), (MARGIN, 42.0), 26.0).colored(figure::BLACK));
-    }
     let subtitle = format!(
         "Every mark is a run of {} units of time with one step dt, written at it. Lower is nearer to the truth, further left is cheaper.",
         short(chart.duration)
     );
+    around(picture, &format!("{}: what accuracy costs", chart.title), &subtitle, caption);
+    legend(picture, chart, plot);
+}
+
+/// Draws a title, what is to be known to read a picture, and its caption.
+pub(super) fn around(picture: &mut Picture, title: &str, subtitle: &str, caption: &[String]) {
+    let title = wrap(title, 26.0, Picture::WIDTH - 2.0 * MARGIN);
+    if let Some(line) = title.first() {
+        picture.text(Text::new(line.clone(), (MARGIN, 42.0), 26.0).colored(figure::BLACK));
+    }
     picture.text(Text::new(subtitle, (MARGIN, 70.0), 15.0));
     let below = Picture::HEIGHT - MARGIN - CAPTION_LINE * caption.len() as f64;
     for (i, line) in caption.iter().enumerate() {
         let y = below + CAPTION_LINE * (i as f64 + 0.8);
         picture.text(Text::new(line.clone(), (MARGIN, y), CAPTION_SIZE).colored(figure::GREY));
     }
-    legend(picture, chart, plot);
 }
 
 fn legend(picture: &mut Picture, chart: &WorkPrecision, plot: &Plot) {

@@ -1,7 +1,10 @@
 //! Draws what work-precision runs have measured: error over cost, in force evaluations and in seconds, on logarithmic axes.
 //!
+//! And what good enough costs with stiffer springs, in [`stiffness`].
+//!
 //! [`Plot`] says where everything is, [`picture`] draws it into lines, areas and texts, [`svg`] and [`png`] draw those with plotters.
 
+mod axes;
 mod figure;
 mod labels;
 mod legend;
@@ -11,6 +14,7 @@ mod render;
 mod scale;
 mod series;
 mod shapes;
+pub mod stiffness;
 mod text;
 mod tracks;
 mod words;

@@ -66,7 +66,7 @@ pub(super) fn meanings(picture: &mut Picture, panel: &Panel, placer: &mut Placer
 }
 
 /// Writes a text that has found room, on a ground that lets what lies below shine through.
-fn write(picture: &mut Picture, text: Option<Text>) {
+pub(super) fn write(picture: &mut Picture, text: Option<Text>) {
     if let Some(text) = text {
         picture.area(text.bounds().corners(), [0xff; 3], 0.6);
         picture.text(text);

@@ -5,19 +5,20 @@ mod tables;
 use core::fmt::Write;
 
 use super::{
-    WorkPrecision,
-    chart::{self, ChartError, short},
+    StiffnessStudy, WorkPrecision,
+    chart::{self, ChartError, short, stiffness},
+    study_stem,
 };
 
 const STYLE: &str = include_str!("style.css");
 const READING: &str = include_str!("reading.html");
 
-/// Writes the page of all `charts` as HTML, with their pictures inside and links to the files `NAME.csv`, `NAME.json` and `NAME.png`
-/// beside it.
+/// Writes the page of all `charts` as HTML, each with the study of stiffness of its scene if there is one, with their pictures inside and links to the
+/// files `NAME.csv`, `NAME.json` and `NAME.png` beside it.
 ///
 /// # Errors
 /// If a chart cannot be drawn.
-pub fn page(charts: &[WorkPrecision]) -> Result<String, ChartError> {
+pub fn page(charts: &[WorkPrecision], studies: &[StiffnessStudy]) -> Result<String, ChartError> {
     let mut body = String::new();
     if charts.len() > 1 {
         let links =
@@ -29,7 +30,7 @@ pub fn page(charts: &[WorkPrecision]) -> Result<String, ChartError> {
         body.push_str("<p>No scene has been measured yet.</p>\n");
     }
     for (i, chart) in charts.iter().enumerate() {
-        section(&mut body, i, chart)?;
+        section(&mut body, i, chart, studies.iter().find(|study| study.scene == chart.scene))?;
     }
     Ok(format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
@@ -39,7 +40,12 @@ pub fn page(charts: &[WorkPrecision]) -> Result<String, ChartError> {
     ))
 }
 
-fn section(body: &mut String, i: usize, chart: &WorkPrecision) -> Result<(), ChartError> {
+fn section(
+    body: &mut String,
+    i: usize,
+    chart: &WorkPrecision,
+    study: Option<&StiffnessStudy>,
+) -> Result<(), ChartError> {
     let title = escape(&chart.title);
     let picture = chart::svg(chart)?;
     let alternative = format!("Error over cost of every method in the scene {title}");
@@ -52,16 +58,30 @@ fn section(body: &mut String, i: usize, chart: &WorkPrecision) -> Result<(), Cha
     );
     tables::cheapest(body, chart);
     tables::all(body, chart);
-    let file = percent(&chart.scene);
-    let link = |suffix: &str, what: &str| format!("<a href=\"{file}.{suffix}\">{what}</a>");
-    let links = [
-        link("csv", "points as CSV"),
-        link("json", "everything as JSON"),
-        link("png", "picture as PNG"),
-        link("svg", "as SVG"),
-    ];
-    let _ = writeln!(body, "<p class=\"files\">{}</p>\n</section>", links.join(" · "));
+    links(body, &chart.scene);
+    if let Some(study) = study {
+        let picture = stiffness::svg(study)?;
+        let alternative = format!("Cost of being good enough over the stiffness of springs in the scene {title}");
+        let _ = writeln!(
+            body,
+            "<h3>What stiffness costs</h3>\n<figure role=\"img\" aria-label=\"{alternative}\">\n{picture}\
+             <figcaption>{}</figcaption></figure>",
+            escape(&stiffness::verdict(study))
+        );
+        tables::stiffness(body, study);
+        links(body, &study_stem(&study.scene));
+    }
+    body.push_str("</section>\n");
     Ok(())
+}
+
+/// Links to the files of a chart.
+fn links(body: &mut String, stem: &str) {
+    let file = percent(stem);
+    let link = |(suffix, what): (&str, &str)| format!("<a href=\"{file}.{suffix}\">{what}</a>");
+    let all = [("csv", "points as CSV"), ("json", "everything as JSON"), ("png", "picture as PNG"), ("svg", "as SVG")];
+    // Writing to a string cannot fail.
+    let _ = writeln!(body, "<p class=\"files\">{}</p>", all.map(link).join(" · "));
 }
 
 fn caption(chart: &WorkPrecision) -> String {

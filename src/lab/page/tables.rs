@@ -5,8 +5,9 @@ use core::fmt::Write;
 use super::escape;
 use crate::{
     lab::{
-        Point, WorkPrecision,
+        Point, StiffnessStudy, WorkPrecision,
         chart::{Series, error, short},
+        studied_methods,
     },
     mechanics::integrators::StickRule,
 };
@@ -37,6 +38,26 @@ pub(super) fn cheapest(body: &mut String, chart: &WorkPrecision) {
         let _ = writeln!(body, "<tr><th>{name}</th><td>{limit}</td>{row}</tr>");
     }
     body.push_str("</tbody>\n</table>\n");
+}
+
+/// Seconds of the cheapest good run of every method at every stiffness.
+pub(super) fn stiffness(body: &mut String, study: &StiffnessStudy) {
+    let cells = |cell: &dyn Fn(usize) -> String| (0..study.scenes.len()).map(cell).collect::<String>();
+    let head = cells(&|i| format!("<th>{}</th>", short(study.scenes[i].factor)));
+    let _ = writeln!(
+        body,
+        "<details>\n<summary>Seconds of the cheapest run that is good enough, and its dt</summary>\n<table>\n<thead><tr>\
+         <th>Stiffness of every spring, in that of the scene</th>{head}</tr></thead>\n<tbody>"
+    );
+    for method in studied_methods() {
+        let row = cells(&|i| match study.scenes[i].run(method) {
+            Some(run) => format!("<td>{}<br>dt {}</td>", exact(run.seconds), short(run.setting.dt)),
+            None => "<td>–</td>".into(),
+        });
+        let _ = writeln!(body, "<tr><th>{}</th>{row}</tr>", escape(method.name()));
+    }
+    let ways = cells(&|i| format!("<td>{}</td>", short(study.scenes[i].way)));
+    let _ = writeln!(body, "<tr><th>way of the centre of mass</th>{ways}</tr>\n</tbody>\n</table>\n</details>");
 }
 
 /// Every run.

@@ -117,7 +117,7 @@ fn both<const D: usize>(problem: &Problem, body: &ProblemBody) -> Result<(Track,
         push: 1e-13 * size * rate * rate,
     };
     let track = follow::<D>(body, &times, &mut Dop853::new(size), grain(4.0))?;
-    let confirmation = follow::<D>(body, &times, &mut Gauss::new(rate), grain(5.0))?;
+    let confirmation = follow::<D>(body, &times, &mut Gauss::new(rate, size), grain(5.0))?;
     let pairs = track.positions.iter().zip(&confirmation.positions);
     let error = pairs.map(|(a, b)| a.distance(*b)).fold(0.0, f64::max);
     Ok((track, error))

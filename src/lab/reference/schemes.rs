@@ -78,6 +78,8 @@ fn problem(error: &differential_equations::error::Error<f64, Vec<f64>>) -> Strin
 pub(super) struct Gauss {
     /// The largest step.
     step: f64,
+    /// A change of an acceleration that is rounding: forces of stiff springs are differences of large numbers.
+    rounding: f64,
     /// Slopes of the stages, and what they become.
     slopes: [Vec<f64>; 3],
     next: [Vec<f64>; 3],
@@ -85,11 +87,12 @@ pub(super) struct Gauss {
 }
 
 impl Gauss {
-    /// `rate` is that of the fastest change of the body.
-    pub(super) fn new(rate: f64) -> Self {
+    /// `rate` is that of the fastest change of the body, `size` a length of it.
+    pub(super) fn new(rate: f64, size: f64) -> Self {
         /// Of the local error 5e-7·(rate·step)⁷ nothing is left then.
         const SMALL: f64 = 0.05;
-        Self { step: SMALL / rate, slopes: Default::default(), next: Default::default(), stage: Vec::new() }
+        let (step, rounding) = (SMALL / rate, 1e-14 * size * rate * rate);
+        Self { step, rounding, slopes: Default::default(), next: Default::default(), stage: Vec::new() }
     }
 
     /// One step.
@@ -125,7 +128,7 @@ impl Gauss {
             let size = self.next.iter().flatten().map(|slope| slope.abs()).fold(0.0, f64::max);
             core::mem::swap(&mut self.slopes, &mut self.next);
             // Rounding errors are all that is left once the change is small and does not shrink any more.
-            if change == 0.0 || (change < 1e-12 * size && change >= last) {
+            if change == 0.0 || (change < f64::max(1e-12 * size, self.rounding) && change >= last) {
                 for (k, value) in y.iter_mut().enumerate() {
                     *value += h * (0..3).map(|j| weights[j] * self.slopes[j][k]).sum::<f64>();
                 }

@@ -1,0 +1,27 @@
+//! The cheapest run of a method that is good enough.
+
+use crate::{
+    lab::{
+        Point, Problem, Reference, Setting, SweepOptions,
+        choose::{steps, worst_error},
+        run::measure,
+        sweep::work,
+    },
+    mechanics::integrators::{Method, StickRule},
+};
+
+/// Goes down from half of the stability limit to the first step that is good enough by the rule of [`choose`](crate::lab::choose()): the worst error
+/// over the step and 0.9 and 0.8 of it is within the budget. A run costs the less the larger its step is, so this one is the cheapest; it is timed.
+pub(super) fn cheapest_run(
+    problem: &Problem,
+    reference: &Reference,
+    method: Method,
+    options: &SweepOptions,
+) -> Option<Point> {
+    let stick = StickRule::InStages;
+    let settings = steps(problem, method, stick).into_iter().map(|dt| Setting { method, stick, dt });
+    let mut short = settings.take_while(|setting| work(problem, method, setting.dt) <= options.most_work());
+    let good =
+        |setting: &Setting| worst_error(problem, reference, *setting).is_some_and(|error| error <= problem.budget);
+    short.find(good).map(|setting| measure(problem, reference, setting, options.repeats()))
+}
