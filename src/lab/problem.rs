@@ -4,7 +4,7 @@ use bevy::{ecs::prelude::*, prelude::Name};
 
 use crate::{
     body::{
-        CoulombFriction, Gravity, Ground, MassDamping, Muscles, Particles, SpineFriction, Springs, Strand,
+        CoulombFriction, Gravity, Ground, Guidance, MassDamping, Muscles, Particles, SpineFriction, Springs, Strand,
         TravelingWaves,
     },
     creatures::FileError,
@@ -87,6 +87,7 @@ impl ProblemBody {
             muscles: self.muscles.as_ref(),
             strand: self.strand,
             waves: self.waves.as_ref(),
+            guidance: Guidance::default(),
             friction: self.friction.as_ref(),
             coulomb: self.coulomb.as_ref(),
             gravity: self.gravity,

@@ -30,6 +30,7 @@ mod race;
 mod saving;
 mod shows;
 mod stability;
+mod steering;
 mod strand;
 mod sync;
 mod watch;
