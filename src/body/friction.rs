@@ -87,7 +87,7 @@ impl SpineFriction {
         Ok(self)
     }
 
-    /// Sets the brake, the least forward drag of a body whose [`TravelingWaves`](super::TravelingWaves) are told to rest (1 a unit of time).
+    /// Sets the brake, the least forward drag and side grip of a body whose [`TravelingWaves`](super::TravelingWaves) are told to rest (1 a unit of time).
     /// Without it a snake that stops coasts more than its own length.
     ///
     /// # Errors
@@ -132,7 +132,7 @@ impl SpineFriction {
         self.isotropic
     }
 
-    /// The least forward drag while the muscles are told to rest.
+    /// The least forward drag and side grip while the muscles are told to rest.
     pub fn brake(&self) -> f64 {
         self.brake
     }

@@ -3,7 +3,7 @@
 use bevy::{ecs::prelude::*, prelude::ReflectComponent, reflect::Reflect};
 use serde::{Deserialize, Serialize};
 
-use super::{BodyError, LEAST_REST_FRACTION, Requirement, Wave, check, muscles::Epoch};
+use super::{BodyError, LEAST_REST_FRACTION, Requirement, Wave, check, guidance::Ramp, muscles::Epoch};
 
 /// Which sides of a segment a wave makes longer and shorter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Reflect, Serialize, Deserialize)]
@@ -59,23 +59,6 @@ impl TravelingWave {
     }
 }
 
-/// How strongly the muscles work: at `since` the part `from` of all that they can, and from there at `rate` to `to`.
-#[derive(Clone, Copy, Debug, PartialEq, Reflect)]
-pub(crate) struct Activity {
-    pub(crate) from: f64,
-    pub(crate) to: f64,
-    pub(crate) since: f64,
-    /// Towards `to`, so below zero where the muscles come to rest; 0 where they are there already.
-    pub(crate) rate: f64,
-}
-
-impl Activity {
-    fn at(self, time: f64) -> f64 {
-        let (least, most) = (self.from.min(self.to), self.from.max(self.to));
-        (self.from + self.rate * (time - self.since)).clamp(least, most)
-    }
-}
-
 /// The muscles of a [`Strand`](super::Strand): waves along it, steering, and how strongly they work.
 ///
 /// They drive the axial rest length of segment j at corner c to L·max(0.2, 1 + ρ(long + s(lateral + b) + h·vertical)), each the sum of the waves of that
@@ -88,7 +71,8 @@ pub struct TravelingWaves {
     epochs: Vec<Epoch>,
     steering: f64,
     ramp: f64,
-    activity: Activity,
+    /// From 0, at rest, to 1.
+    activity: Ramp,
 }
 
 impl TravelingWaves {
@@ -99,8 +83,8 @@ impl TravelingWaves {
     pub fn new(waves: impl IntoIterator<Item = TravelingWave>) -> Result<Self, BodyError> {
         let waves: Vec<_> = waves.into_iter().collect();
         waves.iter().enumerate().try_for_each(|(index, wave)| wave.check(index))?;
-        let activity = Activity { from: 0.0, to: 1.0, since: 0.0, rate: 0.0 };
-        let mut all = Self { epochs: vec![Epoch::default(); waves.len()], waves, steering: 0.0, ramp: 1.0, activity };
+        let epochs = vec![Epoch::default(); waves.len()];
+        let mut all = Self { waves, epochs, steering: 0.0, ramp: 1.0, activity: Ramp::steady(1.0) };
         all.ramp_from(0.0, 0.0);
         Ok(all)
     }
@@ -244,18 +228,12 @@ impl TravelingWaves {
     }
 
     /// How strongly the muscles work.
-    pub(crate) fn activity(&self) -> Activity {
+    pub(crate) fn activity(&self) -> Ramp {
         self.activity
     }
 
     fn ramp_from(&mut self, from: f64, time: f64) {
-        let to = self.activity.to;
         let cycle = self.longest_period().unwrap_or(0.0);
-        let duration = self.ramp * cycle;
-        self.activity = if duration > 0.0 && from != to {
-            Activity { from, to, since: time, rate: if to > from { 1.0 / duration } else { -1.0 / duration } }
-        } else {
-            Activity { from: to, to, since: time, rate: 0.0 }
-        };
+        self.activity = Ramp::towards(from, self.activity.to, time, self.ramp * cycle);
     }
 }

@@ -145,7 +145,7 @@ pub struct Friction {
     /// Friction in all directions μ_iso, zero or more. Left out: 0.
     #[serde(default, skip_serializing_if = "is_zero", deserialize_with = "numbers::non_negative")]
     pub isotropic: f64,
-    /// The least drag while its waves are told to rest, zero or more. Left out: what the creature's kind needs, 0 for a raw body.
+    /// The least drag and side grip while its waves are told to rest, zero or more. Left out: what the creature's kind needs, 0 for a raw body.
     #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "numbers::optional_non_negative")]
     pub brake: Option<f64>,
 }

@@ -4,7 +4,7 @@ use bevy::{ecs::prelude::*, prelude::Name};
 
 use crate::{
     body::{
-        CoulombFriction, Gravity, Ground, MassDamping, Muscles, Particles, SpineFriction, Springs, Strand,
+        CoulombFriction, Gravity, Ground, Guidance, MassDamping, Muscles, Particles, SpineFriction, Springs, Strand,
         TravelingWaves,
     },
     creatures::FileError,
@@ -13,7 +13,7 @@ use crate::{
         integrators::{Method, StickRule},
     },
     physics::Clock,
-    scenes::{self, LoadedScene, SceneBodies},
+    scenes::{self, Budget, LoadedScene, SceneBodies},
 };
 
 use super::{LabError, Setting, hash::Fnv};
@@ -87,6 +87,7 @@ impl ProblemBody {
             muscles: self.muscles.as_ref(),
             strand: self.strand,
             waves: self.waves.as_ref(),
+            guidance: Guidance::default(),
             friction: self.friction.as_ref(),
             coulomb: self.coulomb.as_ref(),
             gravity: self.gravity,
@@ -155,8 +156,10 @@ pub struct Problem {
     pub setting: Setting,
     /// How much simulated time the app shows in a second.
     pub time_scale: f64,
-    /// The error that the scene can afford, in lengths.
+    /// The error that the scene can afford, in lengths; infinite where its budget is another.
     pub budget: f64,
+    /// The part by which the speed of its gaits may be wrong, where that is its budget.
+    pub gait_speed: Option<f64>,
     /// The longest period of a muscle, or nothing where no muscle is.
     pub period: Option<f64>,
     /// How long it is followed: ten of the longest period, or 20 units of time where no muscle is.
@@ -181,7 +184,11 @@ impl Problem {
             bodies,
             setting: Setting { method: file.method, stick: file.stick, dt },
             time_scale: clock.time_scale().unwrap_or(file.clock.time_scale),
-            budget: file.budget_length(),
+            budget: file.budget_length().unwrap_or(f64::INFINITY),
+            gait_speed: match file.budget {
+                Budget::GaitSpeed(part) => Some(part),
+                Budget::Pixels(_) => None,
+            },
             period: None,
             duration: 0.0,
         };
@@ -193,8 +200,17 @@ impl Problem {
     pub fn new(name: impl Into<String>, bodies: Vec<ProblemBody>, setting: Setting) -> Self {
         let name = name.into();
         let title = name.clone();
-        let mut problem =
-            Self { name, title, bodies, setting, time_scale: 1.0, budget: 1.0, period: None, duration: 0.0 };
+        let mut problem = Self {
+            name,
+            title,
+            bodies,
+            setting,
+            time_scale: 1.0,
+            budget: 1.0,
+            gait_speed: None,
+            period: None,
+            duration: 0.0,
+        };
         problem.set_duration();
         problem
     }

@@ -61,9 +61,7 @@ impl<R: Real, const D: usize> Model<R, D> {
     /// The frame of a particle where the spine has this direction.
     #[inline(always)]
     pub(super) fn frame_along(&self, particle: u32, spine: [R; D], position: &[[R; D]]) -> Frame<R, D> {
-        let mut frame = self.level_frame(spine);
-        self.lay(&mut frame, particle, position);
-        frame
+        self.lay(self.level_frame(spine), particle, position)
     }
 
     /// The frame of a mass that stands on level ground.
@@ -103,7 +101,7 @@ impl<R: Real, const D: usize> Model<R, D> {
 
     /// Lays the frame of a level ground where a mass is.
     #[inline(always)]
-    fn lay(&self, frame: &mut Frame<R, D>, particle: u32, position: &[[R; D]]) {
+    fn lay(&self, mut frame: Frame<R, D>, particle: u32, position: &[[R; D]]) -> Frame<R, D> {
         let (zero, one) = (R::splat(0.0), R::splat(1.0));
         let x = position[particle as usize];
         let near = R::splat(Ground::CONTACT_DISTANCE);
@@ -111,13 +109,14 @@ impl<R: Real, const D: usize> Model<R, D> {
             _ if D != 3 => {}
             ContactKind::None => {}
             ContactKind::Flat => frame.touches = x[1].if_below(near, one, zero),
-            ContactKind::Terrain => self.lay_on_terrain(frame, x),
+            ContactKind::Terrain => return self.lay_on_terrain(frame, x),
         }
+        frame
     }
 
     // On its own, as are the sections' spine vectors: methods ask for frames in many places and are compiled for many kinds of bodies and processors.
     #[inline(never)]
-    fn lay_on_terrain(&self, frame: &mut Frame<R, D>, x: [R; D]) {
+    fn lay_on_terrain(&self, mut frame: Frame<R, D>, x: [R; D]) -> Frame<R, D> {
         let (zero, one) = (R::splat(0.0), R::splat(1.0));
         let (distance, n) = self.contact.distance(x);
         frame.touches = distance.if_below(R::splat(Ground::CONTACT_DISTANCE), one, zero);
@@ -129,6 +128,7 @@ impl<R: Real, const D: usize> Model<R, D> {
         frame.side[0] = n[1] * f[2] - n[2] * f[1];
         frame.side[1] = n[2] * f[0] - n[0] * f[2];
         frame.side[2] = n[0] * f[1] - n[1] * f[0];
+        frame
     }
 
     /// The side grip where a mass stands.
@@ -161,9 +161,13 @@ impl<R: Real, const D: usize> Model<R, D> {
         let width = self.sections.as_ref().map_or(1, |sections| sections.width);
         for section in self.spine.chunks(width) {
             // The masses of a section share its spine vector.
-            let mut frame = self.level_frame(self.spine_vector(section[0], position));
+            let span = match &self.sections {
+                None => self.span(section[0], position),
+                Some(sections) => sections.span_inline(section[0], position),
+            };
+            let level = self.level_frame(direction([R::splat(0.0); D], span).1);
             for row in section {
-                self.lay(&mut frame, row.particle, position);
+                let frame = self.lay(level, row.particle, position);
                 self.slow(&friction, &frame, position[row.particle as usize], &mut velocity[row.particle as usize]);
             }
         }
@@ -286,18 +290,28 @@ impl<R: Real, const D: usize> Model<R, D> {
 impl Sections {
     #[inline(never)]
     fn span<R: Real, const D: usize>(&self, row: SpineRow, columns: &[[R; D]]) -> [R; D] {
-        let sum = |section: u32| {
-            let first = section as usize * self.width;
-            let mut sum = [R::splat(0.0); D];
-            for &particle in &self.particles[first..first + self.width] {
-                for axis in 0..D {
-                    sum[axis] += columns[particle as usize][axis];
-                }
+        self.span_inline(row, columns)
+    }
+
+    #[inline(always)]
+    fn span_inline<R: Real, const D: usize>(&self, row: SpineRow, columns: &[[R; D]]) -> [R; D] {
+        let (previous, mut span) = (self.sum(row.previous, columns), self.sum(row.next, columns));
+        for axis in 0..D {
+            span[axis] -= previous[axis];
+        }
+        span
+    }
+
+    #[inline(always)]
+    fn sum<R: Real, const D: usize>(&self, section: u32, columns: &[[R; D]]) -> [R; D] {
+        let first = section as usize * self.width;
+        let mut sum = [R::splat(0.0); D];
+        for &particle in &self.particles[first..first + self.width] {
+            for axis in 0..D {
+                sum[axis] += columns[particle as usize][axis];
             }
-            sum
-        };
-        let (previous, next) = (sum(row.previous), sum(row.next));
-        core::array::from_fn(|axis| next[axis] - previous[axis])
+        }
+        sum
     }
 }
 

@@ -67,6 +67,13 @@ impl<R: Real, const D: usize> Contact<R, D> {
         !self.patches.is_empty()
     }
 
+    /// Gives every patch at least this side grip in a lane.
+    pub(super) fn set_least_grip(&mut self, lane: usize, least: f64, dt: f64) {
+        for (patch, fading) in &mut self.patches {
+            fading.set_lane(lane, patch.grip().max(least), dt);
+        }
+    }
+
     /// Remembers where a step begins.
     #[inline(always)]
     pub(super) fn begin_step(&mut self, state: &State<R, D>) {

@@ -1,8 +1,8 @@
 //! A body, or several of equal topology side by side, in the layout that steps work on.
 
 use crate::body::{
-    CoulombFriction, Epoch, Gravity, Ground, MassDamping, Muscle, Muscles, ParticleId, Particles, SpineFriction,
-    Spring, Springs, Strand, TravelingWaves, Wave, WaveKind,
+    CoulombFriction, Epoch, Gravity, Ground, Guidance, MassDamping, Muscle, Muscles, ParticleId, Particles,
+    SpineFriction, Spring, Springs, Strand, TravelingWaves, Wave, WaveKind,
 };
 
 use super::{
@@ -27,6 +27,8 @@ pub struct BodyParts<'a> {
     pub strand: Option<Strand>,
     /// The waves that travel along the lattice, if any do.
     pub waves: Option<&'a TravelingWaves>,
+    /// How its waves are guided.
+    pub guidance: Guidance,
     /// Its friction, if it has any.
     pub friction: Option<&'a SpineFriction>,
     /// Its dry friction, if it has any.
@@ -371,14 +373,16 @@ impl<R: Real, const D: usize> Model<R, D> {
             strand.set_lane(lane, body, LONGEST_STRETCH);
         }
         if let (Some(row), Some(friction)) = (&mut self.friction, body.friction) {
-            let rests = body.waves.is_some_and(|waves| !waves.is_active());
-            let drag = if rests { friction.drag().max(friction.brake()) } else { friction.drag() };
+            let rests = body.waves.is_some_and(|waves| !(waves.is_active() && body.guidance.is_active()));
+            let brake = if rests { friction.brake() } else { 0.0 };
+            let (drag, grip) = (friction.drag().max(brake), friction.grip().max(brake));
             row.has_drag |= drag > 0.0;
-            row.has_grip |= friction.grip() > 0.0;
+            row.has_grip |= grip > 0.0;
             row.has_isotropic |= friction.isotropic() > 0.0;
             row.drag.set_lane(lane, drag);
             row.drag_loss.set_lane(lane, -libm::expm1(-drag * self.dt));
-            row.grip.set_lane(lane, friction.grip(), self.dt);
+            row.grip.set_lane(lane, grip, self.dt);
+            self.contact.set_least_grip(lane, brake, self.dt);
             row.isotropic.set_lane(lane, friction.isotropic(), self.dt);
         }
         if let Some(coulomb) = &mut self.coulomb {
@@ -395,6 +399,7 @@ impl<R: Real, const D: usize> Model<R, D> {
     }
 
     /// Notes springs that are too long, or of no finite length.
+    #[inline(always)]
     pub(super) fn note_lengths(&mut self, state: &State<R, D>) {
         for spring in &self.springs {
             let [a, b] = spring.ends.map(|end| state.position[end as usize]);
@@ -455,6 +460,11 @@ impl<R: Real, const D: usize> Model<R, D> {
         }
     }
 
+    /// Notes what has exploded in `state`: springs that are too long, and particles that are not finite.
+    pub fn note(&mut self, state: &State<R, D>) {
+        pulp::Arch::new().dispatch(Note { model: self, state });
+    }
+
     /// Whether any evaluation since the model was made met, in this lane, a spring longer than ten rest lengths or of no finite length.
     pub fn has_exploded(&self, lane: usize) -> bool {
         self.overstretched.lane(lane) != 0.0
@@ -489,6 +499,26 @@ impl<R: Real, const D: usize> Model<R, D> {
         let speed = |end: usize| state.velocity[end].iter().map(|v| v.lane(lane)).map(|v| v * v).sum::<f64>();
         let particle = if speed(ends[1]) > speed(ends[0]) { ends[1] } else { ends[0] };
         Some(Explosion { particle, spring: Some(spring) })
+    }
+}
+
+/// [`Model::note`], for the vectors of the processor.
+struct Note<'a, R, const D: usize> {
+    model: &'a mut Model<R, D>,
+    state: &'a State<R, D>,
+}
+
+impl<R: Real, const D: usize> pulp::NullaryFnOnce for Note<'_, R, D> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let Self { model, state } = self;
+        model.note_lengths(state);
+        let (one, most) = (R::splat(1.0), R::splat(f64::MAX));
+        for value in state.position.iter().chain(&state.velocity).flatten() {
+            model.overstretched = value.abs().if_below(most, model.overstretched, one);
+        }
     }
 }
 

@@ -1,12 +1,12 @@
 //! Forces of a strand: its waves, its rest lengths and its springs, four corners at a time.
 
 use crate::body::{
-    Activity, Epoch, LEAST_REST_FRACTION, Strand, TravelingWave, TravelingWaves, Wave, WaveDirection, WaveKind,
+    Epoch, LEAST_REST_FRACTION, Ramp, Strand, TravelingWave, TravelingWaves, Wave, WaveDirection, WaveKind,
 };
 
 use super::{
     BodyParts, Model, Real,
-    quad::{Quad, point, spring_force},
+    quad::{Point, Quad, point, spring_force},
     wave::{sin_cycles, square_cycles},
 };
 
@@ -91,9 +91,51 @@ impl<R: Real> WaveRow<R> {
     }
 }
 
+/// A [`Ramp`] as the force loop reads it.
+#[derive(Clone, Copy, Debug)]
+struct RampRow<R> {
+    from: R,
+    to: R,
+    since: R,
+    rate: R,
+}
+
+impl<R: Real> RampRow<R> {
+    fn steady(value: f64) -> Self {
+        let (value, zero) = (R::splat(value), R::splat(0.0));
+        Self { from: value, to: value, since: zero, rate: zero }
+    }
+
+    fn set_lane(&mut self, lane: usize, Ramp { from, to, since, rate }: Ramp) {
+        self.from.set_lane(lane, from);
+        self.to.set_lane(lane, to);
+        self.since.set_lane(lane, since);
+        self.rate.set_lane(lane, rate);
+    }
+
+    fn lane(&self, lane: usize) -> RampRow<f64> {
+        RampRow {
+            from: self.from.lane(lane),
+            to: self.to.lane(lane),
+            since: self.since.lane(lane),
+            rate: self.rate.lane(lane),
+        }
+    }
+
+    #[inline(always)]
+    fn at(&self, time: f64) -> R {
+        let (from, to) = (self.from, self.to);
+        let least = from.if_below(to, from, to);
+        let most = from.if_below(to, to, from);
+        let now = from + self.rate * (R::splat(time) - self.since);
+        let now = now.if_below(least, least, now);
+        most.if_below(now, most, now)
+    }
+}
+
 /// What the segments of a strand are driven by, before the least rest length.
 #[derive(Clone, Copy, Debug)]
-struct Drive<R> {
+struct SegmentDrive<R> {
     long: R,
     lateral: R,
     vertical: R,
@@ -112,12 +154,12 @@ pub(super) struct StrandRows<R> {
     waves: Vec<WaveRow<R>>,
     has_waves: bool,
     steering: R,
-    activity_from: R,
-    activity_to: R,
-    activity_since: R,
-    activity_rate: R,
+    activity: RampRow<R>,
+    guided_turn: RampRow<R>,
+    guided_lift: RampRow<R>,
+    guided_activity: RampRow<R>,
     /// Scratch: what drives each segment.
-    drive: Vec<Drive<R>>,
+    drive: Vec<SegmentDrive<R>>,
     /// Scratch: how long each segment is, in rest lengths.
     stretch: Vec<R>,
 }
@@ -138,11 +180,11 @@ impl<R: Real> StrandRows<R> {
             waves: waves.into_iter().flat_map(TravelingWaves::iter).map(WaveRow::idle).collect(),
             has_waves: waves.is_some(),
             steering: zero,
-            activity_from: zero,
-            activity_to: zero,
-            activity_since: zero,
-            activity_rate: zero,
-            drive: vec![Drive { long: zero, lateral: zero, vertical: zero }; strand.segments()],
+            activity: RampRow::steady(1.0),
+            guided_turn: RampRow::steady(0.0),
+            guided_lift: RampRow::steady(1.0),
+            guided_activity: RampRow::steady(1.0),
+            drive: vec![SegmentDrive { long: zero, lateral: zero, vertical: zero }; strand.segments()],
             stretch: segments(),
         }
     }
@@ -164,18 +206,17 @@ impl<R: Real> StrandRows<R> {
         for (row, (wave, &epoch)) in self.waves.iter_mut().zip(waves.iter().zip(waves.epochs())) {
             row.set_lane(lane, wave, epoch);
         }
-        let Activity { from, to, since, rate } = waves.activity();
         self.steering.set_lane(lane, waves.steering());
-        self.activity_from.set_lane(lane, from);
-        self.activity_to.set_lane(lane, to);
-        self.activity_since.set_lane(lane, since);
-        self.activity_rate.set_lane(lane, rate);
+        self.activity.set_lane(lane, waves.activity());
+        self.guided_turn.set_lane(lane, body.guidance.turn);
+        self.guided_lift.set_lane(lane, body.guidance.lift);
+        self.guided_activity.set_lane(lane, body.guidance.activity);
     }
 
     /// The strand in one lane.
     pub(super) fn lane(&self, lane: usize) -> StrandRows<f64> {
         let all = |values: &[R]| values.iter().map(|value| value.lane(lane)).collect::<Vec<_>>();
-        let drive = |drive: &Drive<R>| Drive {
+        let drive = |drive: &SegmentDrive<R>| SegmentDrive {
             long: drive.long.lane(lane),
             lateral: drive.lateral.lane(lane),
             vertical: drive.vertical.lane(lane),
@@ -190,32 +231,22 @@ impl<R: Real> StrandRows<R> {
             waves: self.waves.iter().map(|wave| wave.lane(lane)).collect(),
             has_waves: self.has_waves,
             steering: self.steering.lane(lane),
-            activity_from: self.activity_from.lane(lane),
-            activity_to: self.activity_to.lane(lane),
-            activity_since: self.activity_since.lane(lane),
-            activity_rate: self.activity_rate.lane(lane),
+            activity: self.activity.lane(lane),
+            guided_turn: self.guided_turn.lane(lane),
+            guided_lift: self.guided_lift.lane(lane),
+            guided_activity: self.guided_activity.lane(lane),
             drive: self.drive.iter().map(drive).collect(),
             stretch: all(&self.stretch),
         }
-    }
-
-    /// ρ.
-    #[inline(always)]
-    fn activity(&self, time: f64) -> R {
-        let (from, to) = (self.activity_from, self.activity_to);
-        let least = from.if_below(to, from, to);
-        let most = from.if_below(to, to, from);
-        let now = from + self.activity_rate * (R::splat(time) - self.activity_since);
-        let now = now.if_below(least, least, now);
-        most.if_below(now, most, now)
     }
 
     /// What drives each segment at `time`: the waves, once a segment.
     #[inline(always)]
     fn drive_segments(&mut self, time: f64) {
         let zero = R::splat(0.0);
+        let steering = self.steering + self.guided_turn.at(time);
         for drive in &mut self.drive {
-            *drive = Drive { long: zero, lateral: self.steering, vertical: zero };
+            *drive = SegmentDrive { long: zero, lateral: steering, vertical: zero };
         }
         let segments = self.drive.len();
         for wave in &self.waves {
@@ -248,9 +279,10 @@ impl<R: Real> StrandRows<R> {
     fn drive_axial(&mut self, time: f64, rest: &mut [R]) {
         self.drive_segments(time);
         let (one, least) = (R::splat(1.0), R::splat(LEAST_REST_FRACTION));
-        let activity = self.activity(time);
-        for (segment, &Drive { long, lateral, vertical }) in self.drive.iter().enumerate() {
-            let (left, right) = (long + lateral, long - lateral);
+        let activity = self.activity.at(time) * self.guided_activity.at(time);
+        let lift = self.guided_lift.at(time);
+        for (segment, &SegmentDrive { long, lateral, vertical }) in self.drive.iter().enumerate() {
+            let (left, right, vertical) = (long + lateral, long - lateral, lift * vertical);
             let corners = [left - vertical, right - vertical, right + vertical, left + vertical];
             let first = STRIDE * segment + AXIAL;
             for (rest, corner) in rest[first..first + 4].iter_mut().zip(corners) {
@@ -307,7 +339,7 @@ impl<R: Real, const D: usize> Model<R, D> {
     #[inline(never)]
     pub(super) fn drive_strand(&mut self, time: f64, position: &[[R; D]]) {
         let (Some(rows), Some(position)) = (&mut self.strand, in_space(position)) else { return };
-        pulp::Arch::new().dispatch(|| rows.drive(time, position, &mut self.rest));
+        pulp::Arch::new().dispatch(Drive { rows, time, position, rest: &mut self.rest });
     }
 
     /// What the springs of a strand and gravity accelerate every particle with; rest lengths are driven already.
@@ -316,7 +348,8 @@ impl<R: Real, const D: usize> Model<R, D> {
         let Self { strand: Some(rows), rest, inverse_mass, gravity, overstretched, .. } = self else { return };
         let (Some(position), Some(velocity)) = (in_space(position), in_space(velocity)) else { return };
         let (acceleration, _) = acceleration.as_flattened_mut().as_chunks_mut();
-        let too_long = pulp::Arch::new().dispatch(|| rows.forces(rest, inverse_mass, position, velocity, acceleration));
+        let forces = Forces { rows, rest, inverse_mass, position, velocity, acceleration };
+        let too_long = pulp::Arch::new().dispatch(forces);
         *overstretched = too_long.any(*overstretched);
         let Some(gravity) = *gravity else { return };
         let zero = R::splat(0.0);
@@ -326,13 +359,74 @@ impl<R: Real, const D: usize> Model<R, D> {
     }
 }
 
+/// [`StrandRows::drive`], for the vectors of the processor. A closure would not do: what calls it is not inlined, and compiled for the least of all
+/// processors.
+struct Drive<'a, R> {
+    rows: &'a mut StrandRows<R>,
+    time: f64,
+    position: &'a [[R; 3]],
+    rest: &'a mut [R],
+}
+
+impl<R: Real> pulp::NullaryFnOnce for Drive<'_, R> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        self.rows.drive(self.time, self.position, self.rest);
+    }
+}
+
+/// [`StrandRows::forces`], likewise.
+struct Forces<'a, R> {
+    rows: &'a StrandRows<R>,
+    rest: &'a [R],
+    inverse_mass: &'a [R],
+    position: &'a [[R; 3]],
+    velocity: &'a [[R; 3]],
+    acceleration: &'a mut [[R; 3]],
+}
+
+impl<R: Real> pulp::NullaryFnOnce for Forces<'_, R> {
+    type Output = Quad<R>;
+
+    #[inline(always)]
+    fn call(self) -> Quad<R> {
+        self.rows.forces(self.rest, self.inverse_mass, self.position, self.velocity, self.acceleration)
+    }
+}
+
 /// Vectors with three coordinates, which those of a strand always have.
 #[inline(always)]
 fn in_space<R, const D: usize>(vectors: &[[R; D]]) -> Option<&[[R; 3]]> {
     (D == 3).then_some(vectors.as_flattened().as_chunks().0)
 }
 
+/// The positions and the velocities of the masses of a section.
+type Masses<R> = (Point<R>, Point<R>);
+
 impl<R: Real> StrandRows<R> {
+    /// The forces of the four springs from `first` on, from the masses `a` to the masses `b`.
+    #[inline(always)]
+    fn pull(&self, rest: &[R], first: usize, a: &Masses<R>, b: &Masses<R>, too_long: &mut Quad<R>) -> [Quad<R>; 3] {
+        let (stiffness, damping) = (Quad::read(&self.stiffness, first), Quad::read(&self.damping, first));
+        spring_force(a, b, stiffness, damping, Quad::read(rest, first), Quad::read(&self.longest, first), too_long)
+    }
+
+    /// The same of the two springs across a section, each from both of its ends.
+    #[inline(always)]
+    fn pull_across(
+        &self,
+        rest: &[R],
+        first: usize,
+        a: &Masses<R>,
+        b: &Masses<R>,
+        too_long: &mut Quad<R>,
+    ) -> [Quad<R>; 3] {
+        let (stiffness, damping) = (Quad::twice(&self.stiffness, first), Quad::twice(&self.damping, first));
+        spring_force(a, b, stiffness, damping, Quad::twice(rest, first), Quad::twice(&self.longest, first), too_long)
+    }
+
     /// The accelerations by all springs. Gives back, corner by corner, whether a spring was too long.
     #[inline(always)]
     fn forces(
@@ -351,23 +445,18 @@ impl<R: Real> StrandRows<R> {
         for section in 0..self.strand.sections() {
             let first = STRIDE * section;
             let mut force = core::mem::replace(&mut ahead, [zero; 3]);
-            let mut pull = |from: usize, a: &_, b: &_, pair: bool| {
-                let read = |values: &[R]| if pair { Quad::twice(values, from) } else { Quad::read(values, from) };
-                let (stiffness, damping) = (read(&self.stiffness), read(&self.damping));
-                spring_force(a, b, stiffness, damping, read(rest), read(&self.longest), &mut too_long)
-            };
-            let around = pull(first, &here, &(here.0.next(), here.1.next()), false);
+            let around = self.pull(rest, first, &here, &(here.0.next(), here.1.next()), &mut too_long);
             // From each corner to the opposite one, so every diagonal twice, once from each end.
             let opposite = (here.0.opposite(), here.1.opposite());
-            let across = pull(first + SECTION_DIAGONALS, &here, &opposite, true);
+            let across = self.pull_across(rest, first + SECTION_DIAGONALS, &here, &opposite, &mut too_long);
             for axis in 0..3 {
                 force[axis] = force[axis] + across[axis] + around[axis] - around[axis].previous();
             }
             if section < self.strand.segments() {
                 let next = (point(position, 4 * section + 4), point(velocity, 4 * section + 4));
-                let axial = pull(first + AXIAL, &here, &next, false);
-                let rising = pull(first + RISING, &here, &(next.0.next(), next.1.next()), false);
-                let falling = pull(first + FALLING, &(here.0.next(), here.1.next()), &next, false);
+                let axial = self.pull(rest, first + AXIAL, &here, &next, &mut too_long);
+                let rising = self.pull(rest, first + RISING, &here, &(next.0.next(), next.1.next()), &mut too_long);
+                let falling = self.pull(rest, first + FALLING, &(here.0.next(), here.1.next()), &next, &mut too_long);
                 for axis in 0..3 {
                     force[axis] = force[axis] + axial[axis] + rising[axis] + falling[axis].previous();
                     ahead[axis] = zero - axial[axis] - rising[axis].previous() - falling[axis];

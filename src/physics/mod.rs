@@ -3,9 +3,9 @@
 //! Start with [`PhysicsPlugin`]. It runs in `FixedUpdate`, or in any schedule that it is given:
 //!
 //! ```text
-//! the schedule   Actuate   plans: what changed since the last tick; steering belongs here
+//! the schedule   Actuate   plans: what changed since the last tick; whoever tells a body where to go ([`Steer`]) belongs here
 //!                Step      every step of the tick, for all bodies in parallel: rest lengths -> forces -> velocity -> spine friction ->
-//!                          position -> contact, as the body's method orders it
+//!                          position -> contact, as the body's method orders it. At fixed steps in between, steered bodies look where they are
 //!                Watch     freezes what exploded
 //! every frame    Sync      Shown, FollowParticle: what is drawn, between the last two ticks
 //! ```
@@ -18,6 +18,7 @@
 mod clock;
 mod plan;
 mod restart;
+mod steer;
 mod step;
 mod sync;
 mod watch;
@@ -28,11 +29,15 @@ use bevy::{
     prelude::*,
 };
 
-use crate::{body::Particles, mechanics::integrators::Method};
+use crate::{
+    body::{Particles, TravelingWaves},
+    mechanics::integrators::Method,
+};
 
 pub use clock::{Clock, Pace};
 pub use plan::{Plan, body_parts};
 pub use restart::{Restart, StartState};
+pub use steer::Steer;
 pub use step::{Cost, Work};
 pub use sync::{FollowParticle, Previous, Shown, ShownLap};
 pub use watch::{BodyFrozen, Frozen, Verdict};
@@ -40,7 +45,7 @@ pub use watch::{BodyFrozen, Frozen, Verdict};
 /// The sets in which physics runs, in this order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, SystemSet)]
 pub enum PhysicsSystems {
-    /// Before the steps of a tick: plans, and whatever steers bodies.
+    /// Before the steps of a tick: plans, and whatever tells bodies where to go.
     Actuate,
     /// All steps of the tick.
     Step,
@@ -92,6 +97,7 @@ impl Plugin for PhysicsPlugin {
             .register_required_components::<Particles, Work>()
             .register_required_components::<Particles, Previous>()
             .register_required_components::<Particles, Shown>()
+            .register_required_components::<TravelingWaves, Steer>()
             .add_observer(restart::remember_start);
 
         app.configure_sets(

@@ -20,7 +20,7 @@ use crate::{
     },
 };
 
-use super::{Clock, Frozen};
+use super::{Clock, Frozen, Steer};
 
 /// The components of one body, beside its particles, that physics reads.
 #[derive(QueryData)]
@@ -40,13 +40,14 @@ pub(super) struct Parts {
 
 impl PartsItem<'_, '_> {
     /// Borrows the body for mechanics.
-    pub(super) fn body<'a>(&'a self, particles: &'a Particles) -> BodyParts<'a> {
+    pub(super) fn body<'a>(&'a self, particles: &'a Particles, steer: Option<&Steer>) -> BodyParts<'a> {
         BodyParts {
             particles,
             springs: self.springs,
             muscles: self.muscles,
             strand: self.strand.copied(),
             waves: self.waves,
+            guidance: steer.map(Steer::guidance).unwrap_or_default(),
             friction: self.friction,
             coulomb: self.coulomb,
             // Gravity of zero is none: it must not cost a body its axis.
@@ -67,6 +68,7 @@ pub fn body_parts(entity: EntityRef<'_>) -> Option<BodyParts<'_>> {
         muscles: entity.get(),
         strand: entity.get().copied(),
         waves: entity.get(),
+        guidance: entity.get().map(Steer::guidance).unwrap_or_default(),
         friction: entity.get(),
         coulomb: entity.get(),
         gravity: entity.get::<Gravity>().copied().filter(|gravity| gravity.acceleration() > 0.0),
@@ -132,9 +134,9 @@ type Changes = Or<(
 )>;
 
 /// Plans every body that was changed.
-pub(super) fn plan(clock: Res<Clock>, mut bodies: Query<(&Particles, Parts, &mut Plan), Changes>) {
-    for (particles, parts, mut plan) in &mut bodies {
-        let body = parts.body(particles);
+pub(super) fn plan(clock: Res<Clock>, mut bodies: Query<(&Particles, Parts, Option<&Steer>, &mut Plan), Changes>) {
+    for (particles, parts, steer, mut plan) in &mut bodies {
+        let body = parts.body(particles, steer);
         plan.misfit = misfit(&body);
         if plan.misfit.is_some() {
             continue;
@@ -144,13 +146,13 @@ pub(super) fn plan(clock: Res<Clock>, mut bodies: Query<(&Particles, Parts, &mut
     }
 }
 
+/// What is read of a body to watch its limit.
+type Watched = (Option<&'static Name>, &'static Particles, Parts, Option<&'static Steer>, &'static mut Plan);
+
 /// Works out the limit again of every body whose pose may have changed it, and warns where dt is above a limit.
-pub(super) fn watch_limit(
-    clock: Res<Clock>,
-    mut bodies: Query<(Option<&Name>, &Particles, Parts, &mut Plan), Without<Frozen>>,
-) {
-    for (name, particles, parts, mut plan) in &mut bodies {
-        let body = parts.body(particles);
+pub(super) fn watch_limit(clock: Res<Clock>, mut bodies: Query<Watched, Without<Frozen>>) {
+    for (name, particles, parts, steer, mut plan) in &mut bodies {
+        let body = parts.body(particles, steer);
         // A restart counts from 0 again.
         let aged = clock.step().checked_sub(plan.limited_at).is_none_or(|steps| steps >= STEPS_PER_LIMIT);
         if aged && plan.misfit.is_none() && !body.on_axis() {

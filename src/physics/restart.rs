@@ -4,7 +4,7 @@ use bevy::ecs::prelude::*;
 
 use crate::body::{Muscles, Particles, TravelingWaves};
 
-use super::{Clock, Cost, Frozen, Previous, Work};
+use super::{Clock, Cost, Frozen, Previous, Steer, Work};
 
 /// Asks for every body to be put back to where it was spawned and for time 0. Frozen bodies go on; parameters stay as they are.
 #[derive(Clone, Copy, Debug, Default, Message)]
@@ -33,6 +33,7 @@ type Bodies<'w, 's> = Query<
         &'static mut Work,
         Option<&'static mut Muscles>,
         Option<&'static mut TravelingWaves>,
+        Option<&'static mut Steer>,
     ),
 >;
 
@@ -49,7 +50,7 @@ pub(super) fn restart(
     }
     clock.rewind();
     *cost = Cost::default();
-    for (body, mut particles, mut previous, start, mut work, muscles, waves) in &mut bodies {
+    for (body, mut particles, mut previous, start, mut work, muscles, waves, steer) in &mut bodies {
         *work = Work::default();
         particles.set_state(&start.0);
         previous.position.clone_from(start.0.position_columns());
@@ -58,6 +59,9 @@ pub(super) fn restart(
         }
         if let Some(mut waves) = waves {
             waves.rewind();
+        }
+        if let Some(mut steer) = steer {
+            *steer = Steer::default();
         }
         commands.entity(body).remove::<Frozen>();
     }

@@ -13,7 +13,7 @@ use crate::{
 };
 
 use super::{
-    Clock, Frozen, Plan,
+    Clock, Frozen, Plan, Steer,
     plan::{Parts, PartsItem},
     watch::{Failure, Verdict},
 };
@@ -41,6 +41,10 @@ pub struct Work {
     pub force_evaluations: u64,
 }
 
+/// What the steps of a tick need of a body.
+type Bodies =
+    (&'static mut Particles, Parts, &'static Plan, &'static mut Verdict, &'static mut Work, Option<&'static mut Steer>);
+
 /// A body on its way through a tick.
 struct Item<'a> {
     particles: Mut<'a, Particles>,
@@ -48,6 +52,7 @@ struct Item<'a> {
     plan: &'a Plan,
     verdict: Mut<'a, Verdict>,
     work: Mut<'a, Work>,
+    steer: Option<Mut<'a, Steer>>,
     on_axis: bool,
     /// How often its forces were evaluated in this tick, up to the step in which it exploded if it did.
     evaluations: u64,
@@ -55,7 +60,14 @@ struct Item<'a> {
 
 impl Item<'_> {
     fn body(&self) -> BodyParts<'_> {
-        self.parts.body(&self.particles)
+        self.parts.body(&self.particles, self.steer.as_deref())
+    }
+
+    /// Lets a steered body look where it is, before this step. Gives back before which step it wants to look again.
+    fn steer(&mut self, timeline: Timeline, step: u64) -> Option<u64> {
+        // What it comes to is no change that a plan would have to follow.
+        let steer = self.steer.as_mut()?.bypass_change_detection();
+        steer.look(&self.parts.body(&self.particles, None), timeline, step)
     }
 
     fn matches(&self, other: &Self) -> bool {
@@ -70,7 +82,7 @@ pub(super) fn step(
     time: Res<Time>,
     mut clock: ResMut<Clock>,
     mut cost: ResMut<Cost>,
-    mut bodies: Query<(&mut Particles, Parts, &Plan, &mut Verdict, &mut Work), Without<Frozen>>,
+    mut bodies: Query<Bodies, Without<Frozen>>,
 ) {
     let start = Instant::now();
     let steps = clock.take_steps(time.delta_secs_f64());
@@ -81,18 +93,39 @@ pub(super) fn step(
     let (timeline, range) = (clock.timeline(), clock.step()..clock.step() + steps);
     let mut items: Vec<_> = bodies
         .iter_mut()
-        .filter_map(|(particles, parts, plan, mut verdict, work)| {
+        .filter_map(|(particles, parts, plan, mut verdict, work, steer)| {
             if let Some(reason) = plan.misfit.clone() {
                 let (step, time) = (range.start, timeline.time_at(range.start));
                 *verdict = Verdict(Some(Failure { step, time, particle: ParticleId(0), reason }));
                 return None;
             }
-            let body = parts.body(&particles);
+            let body = parts.body(&particles, None);
             let on_axis = body.on_axis();
-            Some(Item { particles, parts, plan, verdict, work, on_axis, evaluations: 0 })
+            Some(Item { particles, parts, plan, verdict, work, steer, on_axis, evaluations: 0 })
         })
         .collect();
     items.sort_by_key(|item| (item.plan.topology, item.on_axis));
+    let mut failed = Vec::new();
+    let mut from = range.start;
+    while from < range.end {
+        // Who steers looks at the same steps whatever the ticks are, so ticks change no bits.
+        let due = items.iter_mut().filter_map(|item| item.steer(timeline, from));
+        let end = due.fold(range.end, u64::min);
+        step_all(&mut items, timeline, from..end);
+        failed.extend(items.extract_if(.., |item| item.verdict.0.is_some()));
+        from = end;
+    }
+    for item in items.iter_mut().chain(&mut failed) {
+        item.work.bypass_change_detection().force_evaluations += item.evaluations;
+        cost.force_evaluations += item.evaluations;
+        cost.spring_updates += item.evaluations * item.body().springs.len() as u64;
+    }
+    clock.advance(steps);
+    cost.seconds = start.elapsed().as_secs_f64();
+}
+
+/// Takes these steps with every body.
+fn step_all(items: &mut [Item<'_>], timeline: Timeline, range: Range<u64>) {
     let mut groups: Vec<_> = items
         .chunk_by_mut(Item::matches)
         .flat_map(|alike| {
@@ -118,13 +151,6 @@ pub(super) fn step(
             });
         }
     }
-    for item in &mut items {
-        item.work.bypass_change_detection().force_evaluations += item.evaluations;
-        cost.force_evaluations += item.evaluations;
-        cost.spring_updates += item.evaluations * item.body().springs.len() as u64;
-    }
-    clock.advance(steps);
-    cost.seconds = start.elapsed().as_secs_f64();
 }
 
 /// How many of these bodies are stepped side by side.
@@ -153,11 +179,12 @@ fn step_lanes<R: Real, const D: usize>(group: &mut [Item<'_>], timeline: Timelin
     }
     let steps_to_take = steps.end - steps.start;
     Advance { model: &mut model, state: &mut state, method, timeline, first: steps.start, steps: steps_to_take }.run();
+    model.note(&state);
     for (lane, item) in group.iter_mut().enumerate() {
-        if model.has_exploded(lane) || model.has_refused(lane) || model.explosion(&state, lane).is_some() {
+        if model.has_exploded(lane) || model.has_refused(lane) {
             retrace::<D>(item, timeline, steps.clone());
         } else {
-            item.evaluations = model.evaluations(lane);
+            item.evaluations += model.evaluations(lane);
             state.write_lane(lane, item.particles.bypass_change_detection());
         }
     }
@@ -166,6 +193,7 @@ fn step_lanes<R: Real, const D: usize>(group: &mut [Item<'_>], timeline: Timelin
 /// Takes the steps of a tick again, one by one and with one body alone, up to the last after which it had not exploded. The body's bits alone are those
 /// that it had in its lane, so this finds the step, whatever ticks and frames there were.
 fn retrace<const D: usize>(item: &mut Item<'_>, timeline: Timeline, steps: Range<u64>) {
+    let before = item.evaluations;
     let body = item.body();
     let method = body.method;
     let mut model = Model::<f64, D>::new(&body, [], timeline.dt);
@@ -174,7 +202,7 @@ fn retrace<const D: usize>(item: &mut Item<'_>, timeline: Timeline, steps: Range
     for step in steps {
         let good = state.clone();
         Advance { model: &mut model, state: &mut state, method, timeline, first: step, steps: 1 }.run();
-        item.evaluations = model.evaluations(0);
+        item.evaluations = before + model.evaluations(0);
         let (particle, reason) = if model.has_refused(0) {
             (0, format!("{} did not converge", method.name()))
         } else if let Some(explosion) = model.explosion(&state, 0) {

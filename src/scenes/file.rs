@@ -62,13 +62,18 @@ pub struct SceneFile {
 }
 
 impl SceneFile {
-    /// The error that it can afford, in lengths: a pixel is one of 1080 rows of what its camera shows at the distance of its target.
-    pub fn budget_length(&self) -> f64 {
+    /// The error that it can afford, in lengths: a pixel is one of 1080 rows of what its camera shows at the distance of its target. Nothing where the
+    /// budget is none of lengths.
+    pub fn budget_length(&self) -> Option<f64> {
         /// The height of the screen in pixels.
         const HEIGHT: f64 = 1080.0;
         let Camera::Orbit { distance, .. } = self.camera;
-        let Budget::Pixels(pixels) = self.budget;
-        pixels * 2.0 * distance * libm::tan(0.5 * FIELD_OF_VIEW.to_radians()) / HEIGHT
+        match self.budget {
+            Budget::Pixels(pixels) => {
+                Some(pixels * 2.0 * distance * libm::tan(0.5 * FIELD_OF_VIEW.to_radians()) / HEIGHT)
+            }
+            Budget::GaitSpeed(_) => None,
+        }
     }
 }
 
@@ -153,6 +158,9 @@ impl Default for Camera {
 pub enum Budget {
     /// As many pixels on a screen that shows it from where its camera starts, above zero.
     Pixels(#[serde(deserialize_with = "numbers::positive")] f64),
+    /// The speed of its gaits, distance a cycle, may be wrong by this part of it, above zero: for strands, which grip and slip with so many masses that no
+    /// two steps lead to the same place after many cycles.
+    GaitSpeed(#[serde(deserialize_with = "numbers::positive")] f64),
 }
 
 impl Default for Budget {

@@ -10,6 +10,7 @@ use bevy_egui::{
 use super::{
     camera::FollowWorm,
     peel::{LEGEND, Peeled},
+    steering::Selected,
 };
 
 /// Whether the keys are written on the screen; key `H`.
@@ -24,18 +25,25 @@ impl Default for KeyHelp {
 }
 
 /// Every key and what it does.
-const KEYS: [(&str, &str); 10] = [
+const KEYS: [(&str, &str); 14] = [
     ("Drag", "look around"),
     ("Right drag", "move"),
     ("Wheel", "nearer, further"),
     ("C", "follow the animal"),
     ("X", "take off the skin"),
+    (LEAD[0], "lead it there"),
+    (LEAD[1], "to the left, to the right"),
+    (LEAD[2], "stop, go on"),
+    (LEAD[3], "the next animal"),
     ("Space", "pause"),
     (". (dot)", "one tick"),
     ("R", "start again"),
     ("F1", "the panel"),
     ("H", "hide this"),
 ];
+
+/// Keys that do something only where there is an animal to lead.
+const LEAD: [&str; 4] = ["Click", "← →", "↓ ↑", "Tab"];
 
 pub(super) fn plugin(app: &mut App) {
     if !app.is_plugin_added::<EguiPlugin>() {
@@ -79,7 +87,12 @@ fn write_legend(mut contexts: EguiContexts, peeled: Res<Peeled>) -> Result {
     Ok(())
 }
 
-fn write(mut contexts: EguiContexts, help: Res<KeyHelp>, following: Res<FollowWorm>) -> Result {
+fn write(
+    mut contexts: EguiContexts,
+    help: Res<KeyHelp>,
+    following: Res<FollowWorm>,
+    selected: Res<Selected>,
+) -> Result {
     if !help.0 {
         return Ok(());
     }
@@ -91,6 +104,9 @@ fn write(mut contexts: EguiContexts, help: Res<KeyHelp>, following: Res<FollowWo
             frame.show(ui, |ui| {
                 egui::Grid::new("keys").spacing([12.0, 3.0]).show(ui, |ui| {
                     for (key, does) in KEYS {
+                        if selected.0.is_none() && LEAD.contains(&key) {
+                            continue;
+                        }
                         let does = if key == "C" && following.0 { "stop following" } else { does };
                         ui.label(RichText::new(key).strong().color(Color32::from_rgb(255, 214, 140)));
                         ui.label(RichText::new(does).color(Color32::WHITE));

@@ -19,6 +19,7 @@ mod peel;
 mod plain;
 mod quality;
 mod skins;
+mod steering;
 mod strand;
 mod studio;
 mod travel;
@@ -34,6 +35,7 @@ pub use help::KeyHelp;
 pub use offscreen::{Picture, Shot, ShotError};
 pub use peel::Peeled;
 pub use quality::Quality;
+pub use steering::Selected;
 pub use window::window_plugins;
 
 use crate::scenes::{self, CurrentScene, Props};
@@ -59,7 +61,7 @@ impl Plugin for ViewPlugin {
         .insert_resource(ClearColor(Color::srgb(0.72, 0.87, 0.95)))
         .add_systems(Update, decorate.run_if(resource_exists_and_changed::<CurrentScene>));
         if app.is_plugin_added::<WinitPlugin>() {
-            app.add_plugins(help::plugin);
+            app.add_plugins((help::plugin, steering::plugin));
         }
     }
 

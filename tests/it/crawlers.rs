@@ -87,6 +87,7 @@ impl Crawler {
             muscles: Some(&muscles),
             strand: None,
             waves: None,
+            guidance: Default::default(),
             friction: None,
             coulomb: Some(&friction),
             gravity: None,

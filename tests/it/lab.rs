@@ -473,6 +473,17 @@ fn the_command_prints_its_choice_and_keeps_the_reference() {
 }
 
 #[test]
+fn a_scene_with_a_budget_of_gait_speed_says_so() {
+    let problem = Problem::of(&scenes::load("meadow").unwrap()).unwrap();
+    assert_eq!(problem.gait_speed, Some(0.01));
+    let error = Cache::none().reference(&problem).unwrap_err().to_string();
+    assert_eq!(
+        error,
+        "meadow: there is no reference solution of a body on the ground, whose contacts are not located; its error budget is a gait speed within 1 %"
+    );
+}
+
+#[test]
 fn shipped_scenes_are_stepped_no_finer_and_no_coarser_than_they_need() {
     for name in library::list(library::SCENE).into_keys() {
         let scene = scenes::load(&name).unwrap();

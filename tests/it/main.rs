@@ -31,6 +31,7 @@ mod race;
 mod saving;
 mod shows;
 mod stability;
+mod steering;
 mod stiffness;
 mod strand;
 mod sync;

@@ -91,6 +91,7 @@ impl Body {
             muscles: Some(&self.muscles),
             strand: None,
             waves: None,
+            guidance: Default::default(),
             friction: Some(&self.friction),
             coulomb: None,
             gravity: None,

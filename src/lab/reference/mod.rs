@@ -46,7 +46,7 @@ impl Reference {
     /// Follows all bodies of a problem, without looking into the cache.
     ///
     /// # Errors
-    /// If a body is a strand, meets a ground, or feels isotropic or Coulomb friction, of which no smooth piece is known, or the motion of one cannot be followed.
+    /// If the budget is a gait's speed, or a body is a strand, meets a ground, or feels isotropic or Coulomb friction, of which no smooth piece is known, or the motion of one cannot be followed.
     pub fn solve(problem: &Problem) -> Result<Self, LabError> {
         let mut reference = Self { positions: Vec::new(), velocities: Vec::new(), events: Vec::new(), error: 0.0 };
         for (index, body) in problem.bodies.iter().enumerate() {
@@ -59,7 +59,15 @@ impl Reference {
                 ProblemBody { coulomb: Some(_), .. } => Some("Coulomb friction, whose events are not located"),
                 _ => None,
             };
-            if let Some(what) = unknown.map(str::to_owned) {
+            // No place that a body comes to says whether its gait has the right speed.
+            let budget =
+                problem.gait_speed.map(|part| format!("its error budget is a gait speed within {} %", 100.0 * part));
+            let what = match (unknown, budget) {
+                (Some(what), Some(budget)) => format!("{what}; {budget}"),
+                (None, Some(budget)) => format!("a gait; {budget}"),
+                (what, None) => what.unwrap_or_default().to_owned(),
+            };
+            if !what.is_empty() {
                 return Err(LabError::Unsupported { scene: problem.name.clone(), what });
             }
             let on_axis = body.parts(Method::default(), StickRule::default()).on_axis();

@@ -11,7 +11,7 @@ use crate::{
 use super::{
     bend, cell_volume,
     fourier::{Spectrum, reflected},
-    heading, is_lifted, path, section_center, section_width, segment_length, spine_vector, strains,
+    heading, is_lifted, length_at_rest, path, section_center, section_width, segment_length, spine_vector, strains,
 };
 
 /// How often a cycle is looked at.
@@ -98,15 +98,11 @@ impl Gait {
         let strand = body.strand?;
         let waves = body.waves?;
         let lateral = waves.iter().find(|wave| wave.kind == WaveKind::Lateral && wave.amplitude > 0.0);
-        let axial = |segment: usize| {
-            let edges = (0..4).filter_map(move |corner| body.springs.get(strand.axial(segment, corner)));
-            edges.map(|spring| spring.rest_length / 4.0).sum::<f64>()
-        };
         Some(Self {
             strand,
             period: waves.longest_period()?,
             wavelength: lateral.map(|wave| wave.wavelength),
-            length: (0..strand.segments()).map(axial).sum(),
+            length: length_at_rest(body.springs, strand),
             samples: Vec::new(),
             due: 0,
         })

@@ -3,12 +3,21 @@
 use bevy::math::DVec3;
 
 use crate::{
-    body::{Ground, Particles, Strand},
+    body::{Ground, Particles, Springs, Strand},
     mechanics::{BodyParts, ground_distance, rest_lengths},
 };
 
 fn corner(particles: &Particles, strand: Strand, section: usize, corner: usize) -> DVec3 {
     particles.position(strand.section(section)[corner]).unwrap_or_default()
+}
+
+/// The length of a strand at rest: of each segment the mean rest length of its four axial edges.
+pub fn length_at_rest(springs: &Springs, strand: Strand) -> f64 {
+    let axial = |segment: usize| {
+        let edges = (0..4).filter_map(move |corner| springs.get(strand.axial(segment, corner)));
+        edges.map(|spring| spring.rest_length / 4.0).sum::<f64>()
+    };
+    (0..strand.segments()).map(axial).sum()
 }
 
 /// The centre of a section, counted from the tail.

@@ -174,9 +174,14 @@ impl Quantity {
                 "1/time",
                 "rate at which sliding in any direction dies away",
             ),
-            Self::Brake => {
-                (FRICTION, "brake", NonNegative, (0.0, 5.0), "1/time", "least drag while the muscles of a strand rest")
-            }
+            Self::Brake => (
+                FRICTION,
+                "brake",
+                NonNegative,
+                (0.0, 5.0),
+                "1/time",
+                "least drag and side grip while the muscles rest",
+            ),
             Self::Drag => {
                 (FRICTION, "drag", NonNegative, (0.0, 5.0), "1/time", "rate at which forward sliding dies away")
             }
