@@ -38,7 +38,7 @@ impl SweepOptions {
     }
 
     /// How many spring updates one run may take.
-    pub(super) fn most_work(&self) -> f64 {
+    fn most_work(&self) -> f64 {
         if self.quick { 1e8 } else { 1e9 }
     }
 }

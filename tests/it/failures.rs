@@ -431,7 +431,7 @@ fn a_ground_of_springs_gives_way_and_bounds_the_step_and_contact_does_neither() 
     let springs = Springs::default();
     let row = Row { muscles: Muscles::new([], &springs).unwrap(), particles: alone, springs };
     let (gravity, ground) = (Gravity::new(gravity).unwrap(), Ground::Flat);
-    let contact = BodyParts { gravity: Some(gravity), ground: Some(ground), ..row.parts(method) };
+    let contact = BodyParts { gravity: Some(gravity), ground: Some(&ground), ..row.parts(method) };
     assert_eq!(contact.stability_limit(0.0), f64::INFINITY);
     let mut app = stepping_app(0.01, 1);
     let body = app.world_mut().spawn((row.particles, row.springs, gravity, ground, method)).id();

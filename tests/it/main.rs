@@ -31,7 +31,7 @@ mod race;
 mod saving;
 mod shows;
 mod stability;
-mod strand;
 mod stiffness;
+mod strand;
 mod sync;
 mod watch;

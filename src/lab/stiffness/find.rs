@@ -10,8 +10,13 @@ use crate::{
     mechanics::integrators::{Method, StickRule},
 };
 
+/// How many spring updates a run may take.
+const MOST_WORK: f64 = 1e8;
+
 /// Goes down from half of the stability limit to the first step that is good enough by the rule of [`choose`](crate::lab::choose()): the worst error
 /// over the step and 0.9 and 0.8 of it is within the budget. A run costs the less the larger its step is, so this one is the cheapest; it is timed.
+///
+/// A run that takes longer than anybody waits for at so many factors is not tried.
 pub(super) fn cheapest_run(
     problem: &Problem,
     reference: &Reference,
@@ -20,7 +25,7 @@ pub(super) fn cheapest_run(
 ) -> Option<Point> {
     let stick = StickRule::InStages;
     let settings = steps(problem, method, stick).into_iter().map(|dt| Setting { method, stick, dt });
-    let mut short = settings.take_while(|setting| work(problem, method, setting.dt) <= options.most_work());
+    let mut short = settings.take_while(|setting| work(problem, method, setting.dt) <= MOST_WORK);
     let good =
         |setting: &Setting| worst_error(problem, reference, *setting).is_some_and(|error| error <= problem.budget);
     short.find(good).map(|setting| measure(problem, reference, setting, options.repeats()))

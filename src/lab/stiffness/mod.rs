@@ -12,8 +12,8 @@ mod table;
 
 use crate::{
     body::{SpringId, Springs},
-    lab::{LabError, Problem, Reference, SweepOptions, machine::machine},
-    mechanics::integrators::Method,
+    lab::{LabError, Problem, Reference, SweepOptions, machine::machine, sweep::work},
+    mechanics::integrators::{Method, StickRule},
 };
 
 pub use crossing::{Crossing, crossing, crossing_of, is_implicit};
@@ -85,6 +85,12 @@ pub fn stiffness_study(
         let done = i * methods.len();
         progress(done, all, &format!("reference at {factor} times the stiffness"));
         let solved = stiffened(problem, factor).and_then(|stiff| {
+            if i > 0 && takes_long(&stiff, options) {
+                return Err(LabError::Unsupported {
+                    scene: stiff.name,
+                    what: format!("stiffnesses × {factor} in reasonable time"),
+                });
+            }
             let reference = options.cache.reference(&stiff)?;
             Ok((stiff, reference))
         });
@@ -111,6 +117,13 @@ pub fn stiffness_study(
     }
     progress(all, all, "done");
     Ok(study)
+}
+
+/// Whether the reference takes longer than half a minute, or in a quick study five seconds: it follows the fastest oscillation in small steps.
+fn takes_long(problem: &Problem, options: &SweepOptions) -> bool {
+    let method = Method::SemiImplicitEuler;
+    let most = if options.quick { 2e5 } else { 1e6 };
+    work(problem, method, problem.stability_limit(method, StickRule::EndOfStep)) > most
 }
 
 /// The longest way that the centre of mass of a body goes.

@@ -69,7 +69,7 @@ pub(super) fn caption(study: &StiffnessStudy) -> Vec<String> {
     let ways = shown.into_iter().filter_map(|i| study.scenes.get(i));
     let ways: Vec<_> = ways.map(|scene| format!("{} at {}", short(scene.way), short(scene.factor))).collect();
     let apart = study.scenes.iter().map(|scene| scene.reference_error).fold(0.0, f64::max);
-    let ended = study.ended.as_ref().map_or_else(String::new, |why| format!(" Ends here because of {why}."));
+    let ended = study.ended.as_ref().map_or_else(String::new, |why| format!(" It ends here: {why}."));
     legend::lines(&[
         verdict(study),
         format!(
