@@ -89,7 +89,7 @@ pub enum StickRule {
     InStages,
     /// Stages know no friction; velocities are projected once at the end of the step, as the documents do it. Every method is of order 1 then.
     EndOfStep,
-    /// RK2 and RK4 stop their steps where a mass comes to rest or starts to slip, and keep their order ([`Located`](self::Located)); other methods, and
+    /// RK2 and RK4 stop their steps where a mass comes to rest or starts to slip, and keep their order ([`Located`]); other methods, and
     /// all on a body with Coulomb friction, as in stages.
     Located,
 }
