@@ -250,15 +250,17 @@ impl RoadForm {
 }
 
 impl Rough {
-    /// The middle without bumps, and the tangent of its plan.
+    /// The middle without bumps, and the direction in which it goes on over a tenth of a row.
     fn station(&self, row: f64) -> Station {
+        let ahead = self.middle_at(row + 0.05) - self.middle_at(row - 0.05);
+        Station { middle: self.middle_at(row), ahead: ahead.with_y(0.0).normalize_or(DVec3::Z) }
+    }
+
+    fn middle_at(&self, row: f64) -> DVec3 {
         let gamma = PI / 30.0;
-        let ((sin, _), (_, cos)) = (libm::sincos(row * gamma), libm::sincos(0.5 * row * gamma));
-        let (slope_x, slope_z) = (-0.5 * libm::sin(0.5 * row * gamma), libm::cos(row * gamma));
-        let ahead = DVec3::new(self.signs.0 * slope_x, 0.0, self.signs.1 * slope_z).normalize_or(DVec3::Z);
+        let (cos, sin) = (libm::cos(0.5 * row * gamma), libm::sin(row * gamma));
         let plan = 30.0 * DVec3::new(self.signs.0 * cos, 0.0, self.signs.1 * sin);
-        let middle = DVec3::new(self.middle.0, self.height(row), self.middle.1) + plan;
-        Station { middle, ahead }
+        DVec3::new(self.middle.0, self.height(row), self.middle.1) + plan
     }
 
     fn height(&self, row: f64) -> f64 {
