@@ -7,7 +7,9 @@ use bevy::{
     math::DVec3,
 };
 
-use super::{Coulomb, Creature, Friction, GardenWorm, Look, Plan, RawBody, RawParticle, StrandPlan};
+use super::{
+    Composed, Coulomb, Creature, Friction, GardenWorm, Look, Plan, RawBody, RawParticle, SixBody, StrandPlan,
+};
 use crate::body::{
     BodyError, Coefficients, CoulombFriction, MassDamping, Muscle, Muscles, Particle, ParticleId, Particles,
     SpineFriction, Spring, SpringId, Springs, Strand, TravelingWaves,
@@ -24,7 +26,7 @@ pub struct Pose {
 
 impl Pose {
     /// The cosine and sine of the heading, exact at whole quarter turns: a worm that crawls along an axis stays on it to the last bit.
-    fn direction(self) -> (f64, f64) {
+    pub(super) fn direction(self) -> (f64, f64) {
         let degrees = self.heading % 360.0;
         let quarters = (degrees / 90.0).round();
         let (sin, cos) = libm::sincos((degrees - quarters * 90.0).to_radians());
@@ -37,6 +39,12 @@ impl Pose {
         // Adding zero makes a plain 0 of −0, which would travel into velocities and from there into hashes.
         (cos + 0.0, sin + 0.0)
     }
+
+    /// Turns about the vertical.
+    pub(super) fn turn(self, (x, y, z): (f64, f64, f64)) -> DVec3 {
+        let (cos, sin) = self.direction();
+        DVec3::new(x * cos - z * sin, y, x * sin + z * cos)
+    }
 }
 
 /// The components of a body, ready to be put on an entity.
@@ -47,8 +55,10 @@ impl Pose {
 pub struct Body {
     /// Its masses.
     pub particles: Particles,
-    /// Its springs.
+    /// Its springs; none where it has `six`.
     pub springs: Springs,
+    /// What moves it in place of springs, if it belongs to the six-matrix particle system.
+    pub six: Option<SixBody>,
     /// What drives its springs, if anything does.
     pub muscles: Option<Muscles>,
     /// The lattice that it is, if it is one.
@@ -69,7 +79,12 @@ impl EntityCommand for Body {
     type Out = ();
 
     fn apply(self, mut entity: EntityWorldMut) {
-        entity.insert((self.particles, self.springs, self.look));
+        entity.insert((self.particles, self.look));
+        if let Some(SixBody { columns, bonds, collisions, rules }) = self.six {
+            entity.insert((columns, bonds, collisions, rules));
+            return;
+        }
+        entity.insert(self.springs);
         if let Some(muscles) = self.muscles {
             entity.insert(muscles);
         }
@@ -98,6 +113,9 @@ impl Creature {
     /// Where two places of the blueprint contradict each other: an end that is not a particle, a spine that names a particle twice,
     /// friction without a spine; and where a number is not allowed, which files refuse earlier.
     pub fn body(&self, pose: Pose) -> Result<Body, BodyError> {
+        if let Some(composed) = self.body.composed() {
+            return self.six_body(&composed, pose);
+        }
         let (raw, kind) = match &self.body {
             Plan::Raw(raw) => {
                 (Cow::Borrowed(raw), Friction { drag: Some(0.0), brake: Some(0.0), ..Friction::default() })
@@ -110,13 +128,15 @@ impl Creature {
                 let brake = Some(StrandPlan::BRAKE);
                 (Cow::Owned(strand.raw()), Friction { drag: Some(0.0), brake, ..Friction::default() })
             }
+            // Built above.
+            Plan::Inchworm(_) | Plan::Roller(_) | Plan::Composed(_) => Default::default(),
         };
         let particles = particles(&raw, pose)?;
         let springs = springs(&raw, &particles)?;
         let muscles = muscles(&raw, &springs)?;
         let (strand, waves) = match &self.body {
             Plan::Strand(plan) => (Some(plan.strand(&springs)?), Some(plan.waves()?)),
-            Plan::Raw(_) | Plan::GardenWorm(_) => (None, None),
+            _ => (None, None),
         };
         let own = self.friction.unwrap_or_default();
         let own = Friction { drag: own.drag.or(kind.drag), brake: own.brake.or(kind.brake), ..own };
@@ -139,16 +159,40 @@ impl Creature {
             Some(MassDamping::Rate(rate)) => Some(MassDamping::rate(rate)?),
             Some(MassDamping::PerStep(part)) => Some(MassDamping::per_step(part)?),
         };
-        Ok(Body { particles, springs, muscles, strand, waves, friction, coulomb, damping, look: self.look() })
+        Ok(Body { particles, springs, six: None, muscles, strand, waves, friction, coulomb, damping, look: self.look() })
+    }
+}
+
+impl Creature {
+    /// A body of the six-matrix particle system, which has no use for what springs have.
+    fn six_body(&self, composed: &Composed, pose: Pose) -> Result<Body, BodyError> {
+        let unused =
+            [("friction", self.friction.is_some()), ("coulomb", self.coulomb.is_some()), ("damping", self.damping.is_some())];
+        if let Some((field, _)) = unused.iter().find(|(_, given)| *given) {
+            let problem = "is for creatures with springs; this one has the damping of its groups and the numbers of its rules";
+            return Err(BodyError::Inconsistent { path: (*field).into(), problem: problem.into() });
+        }
+        let places: Vec<_> = composed.rest().iter().map(|x| pose.turn((*x).into()) + pose.at).collect();
+        let particles = Particles::new(places.iter().map(|&x| Particle::at(x)))?;
+        Ok(Body {
+            six: Some(composed.build(&places)?),
+            springs: Springs::new([], &particles)?,
+            particles,
+            muscles: None,
+            strand: None,
+            waves: None,
+            friction: None,
+            coulomb: None,
+            damping: None,
+            look: self.look(),
+        })
     }
 }
 
 fn particles(raw: &RawBody, pose: Pose) -> Result<Particles, BodyError> {
-    let (cos, sin) = pose.direction();
-    let turn = |(x, y, z): (f64, f64, f64)| DVec3::new(x * cos - z * sin, y, x * sin + z * cos);
     Particles::new(raw.particles.iter().map(|&RawParticle { position, velocity, mass, pinned }| Particle {
-        position: turn(position) + pose.at,
-        velocity: turn(velocity),
+        position: pose.turn(position) + pose.at,
+        velocity: pose.turn(velocity),
         mass,
         pinned,
     }))

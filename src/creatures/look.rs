@@ -3,6 +3,8 @@
 use bevy::{ecs::prelude::*, prelude::ReflectComponent, reflect::Reflect};
 use serde::{Deserialize, Serialize};
 
+use super::SixSkin;
+
 /// How a body wants to be drawn. The physics does not read it.
 #[derive(Clone, Component, Copy, Debug, Default, PartialEq, Eq, Reflect)]
 #[reflect(Component)]
@@ -11,6 +13,8 @@ pub enum Look {
     GardenWorm,
     /// A smooth skin over the sections of a [`Strand`](crate::body::Strand).
     Strand(Skin),
+    /// A creature of the six-matrix particle system.
+    SixMatrix(SixSkin),
     /// Balls and rods.
     #[default]
     Plain,

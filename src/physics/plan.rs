@@ -11,7 +11,7 @@ use bevy::{
 
 use crate::{
     body::{
-        CoulombFriction, Gravity, Ground, MassDamping, Muscles, Particles, SpineFriction, Springs, Strand,
+        CoulombFriction, Gravity, Ground, MassDamping, Muscles, Particles, Rules, SpineFriction, Springs, Strand,
         TravelingWaves,
     },
     mechanics::{
@@ -84,11 +84,11 @@ pub fn body_parts(entity: EntityRef<'_>) -> Option<BodyParts<'_>> {
 pub struct Plan {
     /// Equal for bodies that may be stepped side by side; different ones are equal only by a rare accident.
     pub(super) topology: u64,
-    stability_limit: f64,
+    pub(super) stability_limit: f64,
     /// The step after which the limit was worked out.
     limited_at: u64,
     /// The dt for which a warning was given last.
-    warned: Option<f64>,
+    pub(super) warned: Option<f64>,
     /// Why the body cannot be stepped at all.
     pub(super) misfit: Option<String>,
 }
@@ -133,8 +133,11 @@ type Changes = Or<(
     Changed<StickRule>,
 )>;
 
+/// What is read of a body to plan it.
+type Planned = (&'static Particles, Parts, Option<&'static Steer>, &'static mut Plan);
+
 /// Plans every body that was changed.
-pub(super) fn plan(clock: Res<Clock>, mut bodies: Query<(&Particles, Parts, Option<&Steer>, &mut Plan), Changes>) {
+pub(super) fn plan(clock: Res<Clock>, mut bodies: Query<Planned, (Changes, Without<Rules>)>) {
     for (particles, parts, steer, mut plan) in &mut bodies {
         let body = parts.body(particles, steer);
         plan.misfit = misfit(&body);
@@ -150,7 +153,7 @@ pub(super) fn plan(clock: Res<Clock>, mut bodies: Query<(&Particles, Parts, Opti
 type Watched = (Option<&'static Name>, &'static Particles, Parts, Option<&'static Steer>, &'static mut Plan);
 
 /// Works out the limit again of every body whose pose may have changed it, and warns where dt is above a limit.
-pub(super) fn watch_limit(clock: Res<Clock>, mut bodies: Query<Watched, Without<Frozen>>) {
+pub(super) fn watch_limit(clock: Res<Clock>, mut bodies: Query<Watched, (Without<Frozen>, Without<Rules>)>) {
     for (name, particles, parts, steer, mut plan) in &mut bodies {
         let body = parts.body(particles, steer);
         // A restart counts from 0 again.

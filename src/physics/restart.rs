@@ -2,7 +2,7 @@
 
 use bevy::ecs::prelude::*;
 
-use crate::body::{Muscles, Particles, TravelingWaves};
+use crate::body::{Columns, Muscles, Particles, TravelingWaves};
 
 use super::{Clock, Cost, Frozen, Previous, Steer, Work};
 
@@ -34,6 +34,7 @@ type Bodies<'w, 's> = Query<
         Option<&'static mut Muscles>,
         Option<&'static mut TravelingWaves>,
         Option<&'static mut Steer>,
+        Option<&'static mut Columns>,
     ),
 >;
 
@@ -50,7 +51,7 @@ pub(super) fn restart(
     }
     clock.rewind();
     *cost = Cost::default();
-    for (body, mut particles, mut previous, start, mut work, muscles, waves, steer) in &mut bodies {
+    for (body, mut particles, mut previous, start, mut work, muscles, waves, steer, columns) in &mut bodies {
         *work = Work::default();
         particles.set_state(&start.0);
         previous.position.clone_from(start.0.position_columns());
@@ -62,6 +63,9 @@ pub(super) fn restart(
         }
         if let Some(mut steer) = steer {
             *steer = Steer::default();
+        }
+        if let Some(mut columns) = columns {
+            columns.rewind();
         }
         commands.entity(body).remove::<Frozen>();
     }

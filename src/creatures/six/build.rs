@@ -6,10 +6,14 @@ use bevy::math::DVec3;
 
 use super::{
     Composed, DrivePlan, GroupPlan, LegPlan, MOST_COMPOSED, MusclePlan, PairPlan, ParticlePlace, RangePlace, RulePlan,
-    Shape, WeightPlan,
+    Shape, Station, WeightPlan,
 };
-use crate::body::{
+use crate::{
+    body::{
     BodyError, Bonds, Collisions, Columns, Contraction, Counter, Drive, Leg, ParticleId, Rule, Rules, Weight, Wheel,
+},
+    creatures::Pose,
+    mechanics::six_matrix::Road,
 };
 
 /// The components of a body of the six-matrix particle system, beside its particles.
@@ -118,8 +122,34 @@ impl Shape {
     }
 }
 
+impl Composed {
+    /// The pose in which it stands on a road: its middle over a place `aside` to the right of the road's middle, its front the way the road goes and then
+    /// turned by `turn` degrees, and so low that one of its particles touches the road.
+    ///
+    /// # Errors
+    /// If there is no road below it.
+    pub fn pose_on(&self, road: &Road, station: Station, aside: f64, turn: f64) -> Result<Pose, BodyError> {
+        let (rest, (fx, _, fz)) = (self.rest(), self.forward);
+        let ahead = station.ahead;
+        let heading = libm::atan2(fx * ahead.z - fz * ahead.x, fx * ahead.x + fz * ahead.z).to_degrees() + turn;
+        let middle = rest.iter().sum::<DVec3>() / rest.len().max(1) as f64;
+        let pose = Pose { at: DVec3::ZERO, heading };
+        // From above all of the road.
+        let highest = road.points().iter().map(|point| point.y).fold(f64::NEG_INFINITY, f64::max);
+        let over = (station.middle + aside * station.right()).with_y(highest + 2.0) - pose.turn(middle.with_y(0.0).into());
+        let lowest = rest.iter().map(|x| x.y).fold(f64::INFINITY, f64::min);
+        let at = over - lowest * DVec3::Y;
+        let places: Vec<_> = rest.iter().map(|x| pose.turn((*x).into()) + at).collect();
+        let down = lowered(&places, road.points()).ok_or_else(|| {
+            let problem = "no road is below it there; give another row, or less aside";
+            wrong("on_road", problem.into())
+        })?;
+        Ok(Pose { at: at - down * DVec3::Y, heading })
+    }
+}
+
 /// How far down a body can be moved until one of its particles touches one of the road, which is then 2 away; nothing where it would meet none.
-pub fn lowered(body: &[DVec3], road: &[DVec3]) -> Option<f64> {
+fn lowered(body: &[DVec3], road: &[DVec3]) -> Option<f64> {
     let gaps = body.iter().flat_map(|x| {
         road.iter().filter_map(move |there| {
             let aside = (there.x - x.x) * (there.x - x.x) + (there.z - x.z) * (there.z - x.z);

@@ -62,6 +62,9 @@ impl Default for Inchworm {
 }
 
 impl Inchworm {
+    /// How many particles it has.
+    pub const PARTICLES: usize = 62;
+
     /// Written out in groups, relations and rules.
     pub fn composed(&self) -> Composed {
         let names = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>();

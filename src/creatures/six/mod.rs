@@ -8,13 +8,13 @@ mod inchworm;
 mod roads;
 mod roller;
 
-pub use build::{SixBody, lowered};
+pub use build::SixBody;
 pub use composed::{
     Composed, DrivePlan, GroupPlan, LegPlan, MusclePlan, PairPlan, ParticlePlace, RangePlace, RulePlan, Shape, SixSkin,
     WeightPlan, WheelPlan,
 };
 pub use inchworm::Inchworm;
-pub use roads::{Course, Height, Helix, RoadFile, RoadForm, Rough, Strip};
+pub use roads::{Course, Height, Helix, RoadFile, RoadForm, Rough, Station, Strip};
 pub use roller::Roller;
 
 /// The most particles of a composed creature: every pair of them is asked for bonds and collisions.

@@ -70,6 +70,9 @@ impl Default for Roller {
 }
 
 impl Roller {
+    /// How many particles it has.
+    pub const PARTICLES: usize = 79;
+
     /// Written out in groups, relations and rules.
     pub fn composed(&self) -> Composed {
         const ALL: [&str; 3] = ["left wheel", "right wheel", "axle"];

@@ -130,9 +130,9 @@ pub fn method(world: &mut World) -> Method {
     first.or_else(|| world.get_resource::<CurrentScene>().map(|scene| scene.file.method)).unwrap_or_default()
 }
 
-/// The methods of all bodies.
-pub(super) fn methods(world: &mut World) -> Vec<Method> {
-    bodies(world).into_iter().filter_map(|body| world.get::<Method>(body).copied()).collect()
+/// The methods of all bodies; nothing where a body has none.
+pub(super) fn methods(world: &mut World) -> Vec<Option<Method>> {
+    bodies(world).into_iter().map(|body| world.get::<Method>(body).copied()).collect()
 }
 
 /// The values of all bodies, element by element.
