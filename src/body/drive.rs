@@ -131,7 +131,8 @@ impl Drive {
             there(&path, "axis", &wheel.axis, particles)?;
             if wheel.rim.len() < 3 {
                 let count = wheel.rim.len();
-                let problem = format!("has {count} particles; a wheel has three or more, in the order top, rear, bottom, front");
+                let problem =
+                    format!("has {count} particles; a wheel has three or more, in the order top, rear, bottom, front");
                 return Err(BodyError::Inconsistent { path: format!("{path}.rim"), problem });
             }
         }
@@ -161,7 +162,9 @@ impl Drive {
         ];
         for (row, (left, right)) in rows {
             if [left, right].iter().any(|goal| ![-1.0, 0.0, 1.0].contains(goal)) {
-                let problem = format!("({left}, {right}) is not allowed; give −1 (backwards), 0 (free) or 1 (forwards) for each side");
+                let problem = format!(
+                    "({left}, {right}) is not allowed; give −1 (backwards), 0 (free) or 1 (forwards) for each side"
+                );
                 return Err(BodyError::Inconsistent { path: format!("{path}.table.{row}"), problem });
             }
         }

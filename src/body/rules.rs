@@ -107,12 +107,7 @@ impl Rules {
     ///
     /// # Errors
     /// As [`new`](Self::new); nothing is changed then.
-    pub fn change(
-        &mut self,
-        rule: usize,
-        particles: usize,
-        change: impl FnOnce(&mut Rule),
-    ) -> Result<(), BodyError> {
+    pub fn change(&mut self, rule: usize, particles: usize, change: impl FnOnce(&mut Rule)) -> Result<(), BodyError> {
         let Some(old) = self.rules.get_mut(rule) else { return Ok(()) };
         let mut new = old.clone();
         change(&mut new);
@@ -129,7 +124,8 @@ impl Rules {
 
 impl Rule {
     fn check(&self, path: &str, particles: usize) -> Result<(), BodyError> {
-        let finite = |field: &str, value: f64| check(value, Requirement::Finite, || format!("{path}.{field}")).map(|_| ());
+        let finite =
+            |field: &str, value: f64| check(value, Requirement::Finite, || format!("{path}.{field}")).map(|_| ());
         match self {
             Self::Counter(Counter { on, half }) => {
                 there(path, "on", on, particles)?;

@@ -7,9 +7,7 @@ use bevy::{
     math::DVec3,
 };
 
-use super::{
-    Composed, Coulomb, Creature, Friction, GardenWorm, Look, Plan, RawBody, RawParticle, SixBody, StrandPlan,
-};
+use super::{Composed, Coulomb, Creature, Friction, GardenWorm, Look, Plan, RawBody, RawParticle, SixBody, StrandPlan};
 use crate::body::{
     BodyError, Coefficients, CoulombFriction, MassDamping, Muscle, Muscles, Particle, ParticleId, Particles,
     SpineFriction, Spring, SpringId, Springs, Strand, TravelingWaves,
@@ -159,17 +157,32 @@ impl Creature {
             Some(MassDamping::Rate(rate)) => Some(MassDamping::rate(rate)?),
             Some(MassDamping::PerStep(part)) => Some(MassDamping::per_step(part)?),
         };
-        Ok(Body { particles, springs, six: None, muscles, strand, waves, friction, coulomb, damping, look: self.look() })
+        Ok(Body {
+            particles,
+            springs,
+            six: None,
+            muscles,
+            strand,
+            waves,
+            friction,
+            coulomb,
+            damping,
+            look: self.look(),
+        })
     }
 }
 
 impl Creature {
     /// A body of the six-matrix particle system, which has no use for what springs have.
     fn six_body(&self, composed: &Composed, pose: Pose) -> Result<Body, BodyError> {
-        let unused =
-            [("friction", self.friction.is_some()), ("coulomb", self.coulomb.is_some()), ("damping", self.damping.is_some())];
+        let unused = [
+            ("friction", self.friction.is_some()),
+            ("coulomb", self.coulomb.is_some()),
+            ("damping", self.damping.is_some()),
+        ];
         if let Some((field, _)) = unused.iter().find(|(_, given)| *given) {
-            let problem = "is for creatures with springs; this one has the damping of its groups and the numbers of its rules";
+            let problem =
+                "is for creatures with springs; this one has the damping of its groups and the numbers of its rules";
             return Err(BodyError::Inconsistent { path: (*field).into(), problem: problem.into() });
         }
         let places: Vec<_> = composed.rest().iter().map(|x| pose.turn((*x).into()) + pose.at).collect();

@@ -78,7 +78,8 @@ impl Source {
             Self::Shipped(path) => Path::new(path),
         };
         let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
-        let stem = [SCENE.suffix, CREATURE.suffix, ROAD.suffix, ".ron"].iter().find_map(|suffix| name.strip_suffix(suffix));
+        let stem =
+            [SCENE.suffix, CREATURE.suffix, ROAD.suffix, ".ron"].iter().find_map(|suffix| name.strip_suffix(suffix));
         stem.filter(|stem| !stem.is_empty()).unwrap_or(&name).to_owned()
     }
 

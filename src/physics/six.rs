@@ -51,14 +51,8 @@ impl FixedItem<'_, '_> {
     }
 }
 
-type Changes = Or<(
-    Added<Plan>,
-    Changed<Particles>,
-    Changed<Columns>,
-    Changed<Bonds>,
-    Changed<Collisions>,
-    Changed<Rules>,
-)>;
+type Changes =
+    Or<(Added<Plan>, Changed<Particles>, Changed<Columns>, Changed<Bonds>, Changed<Collisions>, Changed<Rules>)>;
 
 /// Plans every body that was changed. Its limit is that of its bonds at rest, and needs no watching.
 pub(super) fn plan(mut bodies: Query<(&Particles, &Columns, Fixed, &mut Plan), Changes>) {

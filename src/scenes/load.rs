@@ -12,9 +12,9 @@ use super::{Camera, Placement, Props, SceneClock, SceneFile, StepSize, parameter
 use crate::{
     body::{BodyError, Ground, LEAST_REST_FRACTION, Muscles, TravelingWaves},
     creatures::{
-        Body, Creature, FileError, MOST_PARTICLES, Pose,
+        Body, Creature, FileError, MOST_PARTICLES, Pose, RoadForm,
         library::{self, CREATURE, SCENE, Source},
-        RoadForm, parse,
+        parse,
     },
     mechanics::{
         ground_distance,
@@ -159,7 +159,13 @@ pub fn load_creature(name: &str) -> Result<LoadedScene, FileError> {
         set: Default::default(),
     };
     let roads = Roads::read(&file, &source)?;
-    check(LoadedScene { file, source: source.clone(), warnings: Vec::new(), creatures: vec![(source, creature)], roads })
+    check(LoadedScene {
+        file,
+        source: source.clone(),
+        warnings: Vec::new(),
+        creatures: vec![(source, creature)],
+        roads,
+    })
 }
 
 /// How a scene file refers to a creature file wherever the scene file is.

@@ -10,8 +10,8 @@ use super::{
 };
 use crate::{
     body::{
-    BodyError, Bonds, Collisions, Columns, Contraction, Counter, Drive, Leg, ParticleId, Rule, Rules, Weight, Wheel,
-},
+        BodyError, Bonds, Collisions, Columns, Contraction, Counter, Drive, Leg, ParticleId, Rule, Rules, Weight, Wheel,
+    },
     creatures::Pose,
     mechanics::six_matrix::Road,
 };
@@ -50,7 +50,10 @@ impl Composed {
     pub fn build(&self, now: &[DVec3]) -> Result<SixBody, BodyError> {
         let count = self.particles();
         if count > MOST_COMPOSED {
-            return Err(wrong("groups", format!("have {count} particles together; a composed creature has at most {MOST_COMPOSED}")));
+            return Err(wrong(
+                "groups",
+                format!("have {count} particles together; a composed creature has at most {MOST_COMPOSED}"),
+            ));
         }
         let groups = self.ranges()?;
         let rest = self.rest();
@@ -74,8 +77,7 @@ impl Composed {
                 RulePlan::WheelDrive(plan) => rules.push(Rule::Drive(drive(plan, &path, &groups)?)),
             }
         }
-        let damping =
-            self.groups.iter().flat_map(|group| core::iter::repeat_n(group.damping, group.shape.count()));
+        let damping = self.groups.iter().flat_map(|group| core::iter::repeat_n(group.damping, group.shape.count()));
         Ok(SixBody {
             columns: Columns::new(damping.zip(memory))?,
             bonds: Bonds::new(rest.clone(), bonds),
@@ -89,7 +91,10 @@ impl Composed {
         for (i, GroupPlan { name, shape, .. }) in self.groups.iter().enumerate() {
             let next = first + shape.count() as u32;
             if groups.insert(name.as_str(), first..next).is_some() {
-                return Err(wrong(&format!("groups[{i}].name"), format!("`{name}` is the name of another group; give each a name of its own")));
+                return Err(wrong(
+                    &format!("groups[{i}].name"),
+                    format!("`{name}` is the name of another group; give each a name of its own"),
+                ));
             }
             first = next;
         }
@@ -136,7 +141,8 @@ impl Composed {
         let pose = Pose { at: DVec3::ZERO, heading };
         // From above all of the road.
         let highest = road.points().iter().map(|point| point.y).fold(f64::NEG_INFINITY, f64::max);
-        let over = (station.middle + aside * station.right()).with_y(highest + 2.0) - pose.turn(middle.with_y(0.0).into());
+        let over =
+            (station.middle + aside * station.right()).with_y(highest + 2.0) - pose.turn(middle.with_y(0.0).into());
         let lowest = rest.iter().map(|x| x.y).fold(f64::INFINITY, f64::min);
         let at = over - lowest * DVec3::Y;
         let places: Vec<_> = rest.iter().map(|x| pose.turn((*x).into()) + at).collect();
@@ -222,14 +228,18 @@ fn contraction(plan: &MusclePlan, path: &str, groups: &Groups<'_>) -> Result<[Ru
     let group = range(&on_path, name, groups)?;
     if first >= end || *end as usize > group.len() {
         let count = group.len();
-        return Err(wrong(&on_path, format!("({name}, {first}, {end}) is no stretch of it; it has {count} particles: give the first and the one behind the last")));
+        return Err(wrong(
+            &on_path,
+            format!(
+                "({name}, {first}, {end}) is no stretch of it; it has {count} particles: give the first and the one behind the last"
+            ),
+        ));
     }
     let on: Vec<_> = (group.start + first..group.start + end).map(ParticleId).collect();
     if let Some(idle) = on.iter().find(|id| !counting.contains(id)) {
         return Err(wrong(&on_path, format!("particle {} does not count; name its group in `counting`", idle.0)));
     }
-    let along =
-        [one(&format!("{path}.from"), &plan.from, groups)?, one(&format!("{path}.to"), &plan.to, groups)?];
+    let along = [one(&format!("{path}.from"), &plan.from, groups)?, one(&format!("{path}.to"), &plan.to, groups)?];
     Ok([
         Rule::Counter(Counter { on: counting, half: plan.half }),
         Rule::Contraction(Contraction { on, along, strength: plan.strength }),

@@ -2,9 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{
-    Composed, DrivePlan, GroupPlan, PairPlan, ParticlePlace, RulePlan, Shape, SixSkin, WeightPlan, WheelPlan,
-};
+use super::{Composed, DrivePlan, GroupPlan, PairPlan, ParticlePlace, RulePlan, Shape, SixSkin, WeightPlan, WheelPlan};
 use crate::{
     body::{Beams, Sense, Side, Table},
     creatures::numbers,

@@ -62,6 +62,7 @@ fn longest_squared(square: f64) -> f64 {
 /// The first bond that is too long, or of no finite length, and its ends.
 pub(super) fn burst(bonds: &Bonds, position: &[DVec3]) -> Option<(usize, [usize; 2])> {
     let pairs = bonds.relation().pairs().zip(bonds.squares()).enumerate();
-    let is_whole = |i: usize, j: usize, square: f64| (position[j] - position[i]).length_squared() <= longest_squared(square);
+    let is_whole =
+        |i: usize, j: usize, square: f64| (position[j] - position[i]).length_squared() <= longest_squared(square);
     pairs.into_iter().find(|&(_, ((i, j, _), &square))| !is_whole(i, j, square)).map(|(k, ((i, j, _), _))| (k, [i, j]))
 }

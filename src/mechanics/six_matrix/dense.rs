@@ -72,12 +72,8 @@ impl Dense {
         let touching: Vec<_> = own.iter().map(|x| road.iter().any(|there| touches(*x, *there))).collect();
         let mut reaction = vec![DVec3::ZERO; self.body];
         let mut memory = reaction.clone();
-        let old = Old {
-            position: own,
-            velocity: &self.v[..self.body],
-            memory: &self.m[..self.body],
-            touches: &touching,
-        };
+        let old =
+            Old { position: own, velocity: &self.v[..self.body], memory: &self.m[..self.body], touches: &touching };
         rules::apply(parts.rules, &old, Some(&Scan(road)), &mut reaction, &mut memory);
         for (i, (bond, collision)) in forces.into_iter().enumerate() {
             let reaction = reaction.get(i).copied().unwrap_or_default();

@@ -133,7 +133,9 @@ fn around(point: DVec3) -> impl Iterator<Item = [i32; 3]> {
         let far = (point.clamp(least, least + CELL) - point).length_squared();
         far <= reach.x * reach.x || x1.abs_diff(x0) > 2
     };
-    (x0..=x1).flat_map(move |x| (y0..=y1).flat_map(move |y| (z0..=z1).map(move |z| [x, y, z]))).filter(move |&[x, y, z]| corner(x, y, z))
+    (x0..=x1)
+        .flat_map(move |x| (y0..=y1).flat_map(move |y| (z0..=z1).map(move |z| [x, y, z])))
+        .filter(move |&[x, y, z]| corner(x, y, z))
 }
 
 fn running_sum(counts: &[u32]) -> Vec<u32> {

@@ -31,7 +31,8 @@ impl SixParts<'_> {
     /// The first thing that is wrong with the components as a whole, if any: they can be put together by hand that were not made for each other.
     pub fn misfit(&self) -> Option<String> {
         let particles = self.particles.len();
-        let made = |what: &str| Some(format!("its {what} were made for another body; this one has {particles} particles"));
+        let made =
+            |what: &str| Some(format!("its {what} were made for another body; this one has {particles} particles"));
         if self.columns.len() != particles {
             return made("columns");
         }
@@ -131,6 +132,13 @@ impl Stepper {
             reaction: zeros,
             touches: vec![false; count],
         }
+    }
+
+    /// Moves every particle from where it is.
+    #[must_use]
+    pub fn moved(mut self, by: impl Fn(usize) -> DVec3) -> Self {
+        self.now.position.iter_mut().enumerate().for_each(|(i, x)| *x += by(i));
+        self
     }
 
     /// The state that has been reached.

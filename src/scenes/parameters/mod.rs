@@ -1,9 +1,10 @@
 //! Every live parameter under one path: the panel, scene files (`set`) and `--set` share this registry.
 //!
 //! `worm.springs.stiffness` is that of all springs of the body `worm`, `worm.springs[1].stiffness` that of one. Muscles are counted in the order
-//! of the springs that they drive. `clock.dt` and `clock.time_scale` belong to the scene.
+//! of the springs that they drive; `muscle`, `legs`, `weight` and `drive` are rules of a creature of the six-matrix particle system, in the order of its file. `clock.dt` and `clock.time_scale` belong to the scene.
 
 mod quantity;
+mod six;
 
 use core::ops::RangeInclusive;
 use std::collections::{BTreeMap, HashMap};

@@ -2,11 +2,11 @@
 
 use bevy::{ecs::world::EntityRef, prelude::*};
 
-use super::{Kind, Parameter};
+use super::{Kind, Parameter, six::SixQuantity};
 use crate::{
     body::{
-        BodyError, Gravity, Muscle, Muscles, Particle, ParticleId, Particles, Requirement, SpineFriction, Spring,
-        SpringId, Springs, TravelingWave, TravelingWaves,
+        BodyError, Gravity, Muscle, Muscles, Particle, ParticleId, Particles, Requirement, Rules, SpineFriction,
+        Spring, SpringId, Springs, TravelingWave, TravelingWaves,
     },
     physics::Clock,
 };
@@ -24,6 +24,12 @@ pub(super) enum Group {
     Gait,
     Friction,
     Gravity,
+    Bonds,
+    Collisions,
+    Muscle,
+    Legs,
+    Weight,
+    Drive,
 }
 
 impl Group {
@@ -37,19 +43,48 @@ impl Group {
             Self::Gait => "gait",
             Self::Friction => "friction",
             Self::Gravity => "gravity",
+            Self::Bonds => "bonds",
+            Self::Collisions => "collisions",
+            Self::Muscle => "muscle",
+            Self::Legs => "legs",
+            Self::Weight => "weight",
+            Self::Drive => "drive",
         }
     }
 
     /// Whether its elements are counted.
     pub(super) fn is_indexed(self) -> bool {
-        matches!(self, Self::Springs | Self::Particles | Self::Muscles | Self::Waves)
+        matches!(
+            self,
+            Self::Springs
+                | Self::Particles
+                | Self::Muscles
+                | Self::Waves
+                | Self::Muscle
+                | Self::Legs
+                | Self::Weight
+                | Self::Drive
+        )
     }
 
     /// Takes the group off the front of the part of a path behind the body's name.
     pub(super) fn parse(path: &str) -> (Option<Self>, &str) {
         let end = path.find(['.', '[']).unwrap_or(path.len());
-        let all =
-            [Self::Springs, Self::Particles, Self::Muscles, Self::Waves, Self::Gait, Self::Friction, Self::Gravity];
+        let all = [
+            Self::Springs,
+            Self::Particles,
+            Self::Muscles,
+            Self::Waves,
+            Self::Gait,
+            Self::Friction,
+            Self::Gravity,
+            Self::Bonds,
+            Self::Collisions,
+            Self::Muscle,
+            Self::Legs,
+            Self::Weight,
+            Self::Drive,
+        ];
         (all.into_iter().find(|group| group.name() == &path[..end]), &path[end..])
     }
 }
@@ -80,13 +115,15 @@ pub(super) enum Quantity {
     Brake,
     Ratchet,
     Gravity,
+    /// Of a body of the six-matrix particle system.
+    Six(SixQuantity),
 }
 
 /// What is said about a quantity: group, field, what it must be, the usual range, unit and help.
-type Facts = (Group, &'static str, Requirement, (f64, f64), &'static str, &'static str);
+pub(super) type Facts = (Group, &'static str, Requirement, (f64, f64), &'static str, &'static str);
 
 impl Quantity {
-    pub(super) const OF_BODIES: [Self; 21] = [
+    pub(super) const OF_BODIES: [Self; 40] = [
         Self::Stiffness,
         Self::Damping,
         Self::RestLength,
@@ -108,6 +145,25 @@ impl Quantity {
         Self::Brake,
         Self::Ratchet,
         Self::Gravity,
+        Self::Six(SixQuantity::Damping),
+        Self::Six(SixQuantity::BondStiffness),
+        Self::Six(SixQuantity::CollisionStiffness),
+        Self::Six(SixQuantity::Strength),
+        Self::Six(SixQuantity::Half),
+        Self::Six(SixQuantity::Seek),
+        Self::Six(SixQuantity::Push),
+        Self::Six(SixQuantity::Grip),
+        Self::Six(SixQuantity::Pull),
+        Self::Six(SixQuantity::Friction),
+        Self::Six(SixQuantity::Speed),
+        Self::Six(SixQuantity::Mean),
+        Self::Six(SixQuantity::Limit),
+        Self::Six(SixQuantity::Lift),
+        Self::Six(SixQuantity::Front),
+        Self::Six(SixQuantity::Side),
+        Self::Six(SixQuantity::Down),
+        Self::Six(SixQuantity::Out),
+        Self::Six(SixQuantity::Reach),
     ];
 
     fn facts(self) -> Facts {
@@ -199,6 +255,7 @@ impl Quantity {
             Self::Gravity => {
                 (Group::Gravity, "gravity", NonNegative, (0.0, 1.0), "length/time²", "acceleration towards the ground")
             }
+            Self::Six(six) => six.facts(),
         }
     }
 
@@ -258,9 +315,13 @@ impl Quantity {
 
     /// How many of it a body has.
     pub(super) fn count(self, body: EntityRef) -> usize {
+        let has_springs = !body.contains::<Rules>();
         match self.group() {
+            _ if matches!(self, Self::Six(_)) => self.read(body).len(),
             Group::Clock => 0,
             Group::Springs => body.get::<Springs>().map_or(0, Springs::len),
+            // The particles of the six-matrix system are of unit mass.
+            Group::Particles if !has_springs => 0,
             Group::Particles => body.get::<Particles>().map_or(0, Particles::len),
             Group::Muscles => body.get::<Muscles>().map_or(0, Muscles::len),
             Group::Waves => body.get::<TravelingWaves>().map_or(0, TravelingWaves::len),
@@ -268,12 +329,19 @@ impl Quantity {
             // Only muscles that can be told to rest need a brake.
             Group::Friction if self == Self::Brake && !body.contains::<TravelingWaves>() => 0,
             Group::Friction => usize::from(body.contains::<SpineFriction>()),
-            Group::Gravity => usize::from(body.contains::<Particles>()),
+            Group::Gravity => usize::from(body.contains::<Particles>() && has_springs),
+            Group::Bonds | Group::Collisions | Group::Muscle | Group::Legs | Group::Weight | Group::Drive => 0,
         }
     }
 
     /// The values of a body, one an element; none where the body has no such thing.
     pub(super) fn read(self, body: EntityRef) -> Vec<f64> {
+        if let Self::Six(six) = self {
+            return six.read(body);
+        }
+        if self.count(body) == 0 {
+            return Vec::new();
+        }
         match self.group() {
             Group::Clock => Vec::new(),
             Group::Springs => body
@@ -292,11 +360,11 @@ impl Quantity {
                 .map(|waves| waves.iter().map(|mut wave| *self.of_wave(&mut wave)).collect())
                 .unwrap_or_default(),
             Group::Gait => body.get::<TravelingWaves>().map(|waves| self.of_gait(waves)).into_iter().collect(),
-            Group::Friction if self.count(body) == 0 => Vec::new(),
             Group::Friction => {
                 body.get::<SpineFriction>().map(|friction| self.of_friction(friction)).into_iter().collect()
             }
             Group::Gravity => vec![body.get::<Gravity>().map_or(0.0, |gravity| gravity.acceleration())],
+            Group::Bonds | Group::Collisions | Group::Muscle | Group::Legs | Group::Weight | Group::Drive => Vec::new(),
         }
     }
 
@@ -313,8 +381,18 @@ impl Quantity {
         for i in changed {
             // Counts come from vectors that are indexed by u32.
             let id = i as u32;
+            if let Self::Six(six) = self {
+                six.write(&mut body, i, value)?;
+                continue;
+            }
             match self.group() {
-                Group::Clock => {}
+                Group::Clock
+                | Group::Bonds
+                | Group::Collisions
+                | Group::Muscle
+                | Group::Legs
+                | Group::Weight
+                | Group::Drive => {}
                 Group::Springs => {
                     if let Some(mut springs) = body.get_mut::<Springs>()
                         && let Some(mut spring) = springs.get(SpringId(id))
