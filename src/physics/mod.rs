@@ -22,6 +22,7 @@ mod six;
 mod steer;
 mod step;
 mod sync;
+mod trail;
 mod watch;
 
 use bevy::{
@@ -31,7 +32,7 @@ use bevy::{
 };
 
 use crate::{
-    body::{Particles, Springs, TravelingWaves},
+    body::{Particles, Rules, Springs, TravelingWaves},
     mechanics::integrators::Method,
 };
 
@@ -42,6 +43,7 @@ pub use six::six_parts;
 pub use steer::Steer;
 pub use step::{Cost, Work};
 pub use sync::{FollowParticle, Previous, Shown, ShownLap};
+pub use trail::Trail;
 pub use watch::{BodyFrozen, Frozen, Verdict};
 
 /// The sets in which physics runs, in this order.
@@ -100,6 +102,7 @@ impl Plugin for PhysicsPlugin {
             .register_required_components::<Particles, Previous>()
             .register_required_components::<Particles, Shown>()
             .register_required_components::<TravelingWaves, Steer>()
+            .register_required_components::<Rules, Trail>()
             .add_observer(restart::remember_start);
 
         app.configure_sets(

@@ -18,7 +18,7 @@ use crate::{
 };
 
 use super::{
-    Clock, Frozen, Plan, Work,
+    Clock, Frozen, Plan, Trail, Work,
     step::Cost,
     watch::{Failure, Verdict},
 };
@@ -85,8 +85,15 @@ pub(super) fn watch_limit(
 }
 
 /// What the steps of a tick need of a body.
-pub(super) type Bodies =
-    (&'static mut Particles, &'static mut Columns, Fixed, &'static Plan, &'static mut Verdict, &'static mut Work);
+pub(super) type Bodies = (
+    &'static mut Particles,
+    &'static mut Columns,
+    Fixed,
+    &'static Plan,
+    &'static mut Verdict,
+    &'static mut Work,
+    &'static mut Trail,
+);
 
 /// A body on its way through a tick.
 struct Item<'a> {
@@ -95,6 +102,7 @@ struct Item<'a> {
     fixed: FixedItem<'a, 'a>,
     verdict: Mut<'a, Verdict>,
     work: Mut<'a, Work>,
+    trail: Mut<'a, Trail>,
     /// How often its forces were evaluated in this tick.
     evaluations: u64,
 }
@@ -108,13 +116,13 @@ pub(super) fn step(
 ) {
     let mut items: Vec<_> = bodies
         .iter_mut()
-        .filter_map(|(particles, columns, fixed, plan, mut verdict, work)| {
+        .filter_map(|(particles, columns, fixed, plan, mut verdict, work, trail)| {
             if let Some(reason) = plan.misfit.clone() {
                 let (step, time) = (steps.start, timeline.time_at(steps.start));
                 *verdict = Verdict(Some(Failure { step, time, particle: ParticleId(0), reason }));
                 return None;
             }
-            Some(Item { particles, columns, fixed, verdict, work, evaluations: 0 })
+            Some(Item { particles, columns, fixed, verdict, work, trail, evaluations: 0 })
         })
         .collect();
     match &mut items[..] {
@@ -144,6 +152,7 @@ impl Item<'_> {
         let mut stepper = Stepper::new(&parts);
         for step in steps.clone() {
             self.evaluations += 1;
+            self.trail.note(step, || stepper.state().center());
             let Err(burst) = stepper.step(&parts, timeline.dt) else { continue };
             let reason = match burst.bond {
                 Some(bond) => format!("bond {bond} is longer than ten times its initial length"),

@@ -572,29 +572,29 @@ fn roads_of_one_particle_and_of_none_are_roads() {
     }
 }
 
-#[test]
-fn memory_grows_with_the_road_and_with_nothing_else() {
-    // A million road particles: no matrix, and answers as quick as ever.
-    let form = RoadForm::Strip(Strip {
-        rows: 10_000,
-        columns: 100,
-        spacing: 1.5,
-        at: (0.0, 2.0, 40.0),
-        heading: -90.0,
-        bump: 0.0,
-    });
-    let before = resident();
+/// A straight road of a hundred particles a row, how many bytes it takes a particle, and how far the roller gets on it in 100 steps.
+fn wide(rows: u32) -> (f64, f64) {
+    let form =
+        RoadForm::Strip(Strip { rows, columns: 100, spacing: 1.5, at: (0.0, 2.0, 40.0), heading: -90.0, bump: 0.0 });
     let road = form.build().unwrap();
-    assert_eq!(road.points().len(), 1_000_000);
-    let used = resident().saturating_sub(before);
-    assert!(used < 400 << 20, "{} MiB", used >> 20);
+    let bytes = road.bytes() as f64 / road.points().len() as f64;
     let roller = Six::new(&Roller::default().composed(), |x| x, Some(road));
-    let z = roller.after(100, |state| state.center().z);
-    assert!((z + 0.42).abs() < 0.01, "it drives as on a short strip: {z}");
+    (bytes, roller.after(100, |state| state.center().z))
 }
 
-/// Bytes of memory in use; 0 where the system does not tell.
-fn resident() -> u64 {
-    let status = std::fs::read_to_string("/proc/self/statm").unwrap_or_default();
-    status.split_whitespace().nth(1).and_then(|pages| pages.parse::<u64>().ok()).unwrap_or(0) * 4096
+#[test]
+fn memory_grows_with_the_road_and_with_nothing_else() {
+    for rows in [60, 600] {
+        let (bytes, z) = wide(rows);
+        assert!(bytes < 250.0, "{rows} rows: {bytes} bytes a particle");
+        assert!((z + 0.42).abs() < 0.01, "it drives as on a short strip: {z}");
+    }
+}
+
+#[test]
+#[ignore = "takes long unoptimised: cargo test --release --no-default-features --test it a_road_of_a_million -- --ignored --nocapture"]
+fn a_road_of_a_million_particles_takes_no_more_for_each() {
+    let (bytes, z) = wide(10_000);
+    println!("{bytes:.0} bytes a particle");
+    assert!(bytes < 250.0 && (z + 0.42).abs() < 0.01, "{bytes}, {z}");
 }

@@ -7,9 +7,12 @@ use bevy::{math::DVec3, platform::collections::HashMap};
 /// How near two unit balls are that touch.
 pub(super) const TOUCH: f64 = 2.0;
 /// The edge of a cell. A particle's contacts are looked for in its cell alone, which therefore lists all that is within [`TOUCH`] of it.
-const CELL: f64 = 2.0;
-/// The edge of a block. The nearest road particle and the beams' hits are looked for block by block.
-const BLOCK: f64 = 12.0;
+const CELL: f64 = 4.0;
+/// The edge of a block of so many particles. The nearest of them and the beams' hits are looked for block by block, so there should be about as many blocks as
+/// particles in a block: on a road, which is a surface, its edge goes with the fourth root of their number.
+fn block_edge(particles: usize) -> f64 {
+    2.0 * (particles as f64).sqrt().sqrt()
+}
 
 /// Road particles by place. Its memory grows with their number and with nothing else.
 #[derive(Clone, Debug, Default)]
@@ -85,11 +88,12 @@ impl Grid {
     }
 
     fn list_blocks(&mut self, points: &[DVec3]) {
+        let edge = block_edge(points.len());
         let mut ids: HashMap<[i32; 3], u32> = HashMap::default();
         let mut members: Vec<Vec<u32>> = Vec::new();
         for (i, &point) in points.iter().enumerate() {
             let next = members.len() as u32;
-            let id = *ids.entry(cell(point, BLOCK)).or_insert(next);
+            let id = *ids.entry(cell(point, edge)).or_insert(next);
             if id == next {
                 members.push(Vec::new());
             }
@@ -112,6 +116,13 @@ impl Grid {
         &self.near[self.starts[id as usize] as usize..self.starts[id as usize + 1] as usize]
     }
 
+    /// How many bytes its lists take.
+    pub(super) fn bytes(&self) -> usize {
+        self.cells.capacity() * size_of::<([i32; 3], u32)>()
+            + (self.starts.capacity() + self.near.capacity() + self.members.capacity()) * size_of::<u32>()
+            + self.blocks.capacity() * size_of::<Block>()
+    }
+
     pub(super) fn blocks(&self) -> &[Block] {
         &self.blocks
     }
@@ -125,17 +136,14 @@ impl Grid {
 /// The cells that have a place within [`TOUCH`] of a point, and some beside them.
 fn around(point: DVec3) -> impl Iterator<Item = [i32; 3]> {
     // A little more, so that no rounding leaves out what touches.
-    let reach = DVec3::splat(TOUCH * (1.0 + 1e-9));
+    let reach = TOUCH * (1.0 + 1e-9);
     let ([x0, y0, z0], [x1, y1, z1]) = (cell(point - reach, CELL), cell(point + reach, CELL));
-    let corner = move |x: i32, y: i32, z: i32| {
-        // How far the cell is from the point: corners of the cube of cells are out of reach.
-        let least = DVec3::new(f64::from(x), f64::from(y), f64::from(z)) * CELL;
-        let far = (point.clamp(least, least + CELL) - point).length_squared();
-        far <= reach.x * reach.x || x1.abs_diff(x0) > 2
-    };
-    (x0..=x1)
-        .flat_map(move |x| (y0..=y1).flat_map(move |y| (z0..=z1).map(move |z| [x, y, z])))
-        .filter(move |&[x, y, z]| corner(x, y, z))
+    let cube = (x0..=x1).flat_map(move |x| (y0..=y1).flat_map(move |y| (z0..=z1).map(move |z| [x, y, z])));
+    cube.filter(move |key| {
+        // Corners of the cube are out of reach.
+        let least = DVec3::from(key.map(f64::from)) * CELL;
+        (point.clamp(least, least + CELL) - point).length_squared() <= reach * reach
+    })
 }
 
 fn running_sum(counts: &[u32]) -> Vec<u32> {

@@ -64,6 +64,11 @@ impl Road {
         &self.0.line
     }
 
+    /// How many bytes of memory its particles and their grid take: in proportion to how many there are.
+    pub fn bytes(&self) -> usize {
+        (self.0.points.capacity() + self.0.line.capacity()) * size_of::<DVec3>() + self.0.grid.bytes()
+    }
+
     /// How far along its middle a point is, seen from above: the way along the line to where it passes the point most closely. 0 without a line.
     pub fn way(&self, point: DVec3) -> f64 {
         let flat = |point: DVec3| bevy::math::DVec2::new(point.x, point.z);
