@@ -1,5 +1,7 @@
 //! Many steps of a body, in the widest vectors that the processor has.
 
+use core::marker::PhantomData;
+
 use super::{
     Model, Real, State,
     integrators::{
@@ -47,11 +49,32 @@ pub struct Advance<'a, R, const D: usize> {
 impl<R: Real, const D: usize> Advance<'_, R, D> {
     /// Takes the steps. Which vectors the processor has decides how fast, and not what comes out.
     pub fn run(self) {
-        pulp::Arch::new().dispatch(self);
+        let located = self.model.stick == StickRule::Located && self.model.coulomb.is_none();
+        match self.method {
+            Method::RungeKutta2 if located => self.wide::<LaneByLane<Located<RungeKutta2<f64, D>, D>, R, D>>(),
+            Method::RungeKutta4 if located => self.wide::<LaneByLane<Located<RungeKutta4<f64, D>, D>, R, D>>(),
+            Method::SemiImplicitEuler => self.wide::<SemiImplicitEuler<R, D>>(),
+            Method::ExplicitEuler => self.wide::<ExplicitEuler<R, D>>(),
+            Method::StormerVerlet => self.wide::<StormerVerlet<R, D>>(),
+            Method::DampedVerlet => self.wide::<DampedVerlet<R, D>>(),
+            Method::RungeKutta2 => self.wide::<RungeKutta2<R, D>>(),
+            Method::RungeKutta4 => self.wide::<RungeKutta4<R, D>>(),
+            Method::Xpbd => self.wide::<Xpbd<R, D>>(),
+            Method::Leapfrog => self.plain::<LaneByLane<Leapfrog<D>, R, D>>(),
+            Method::ImplicitMidpoint => self.plain::<LaneByLane<ImplicitMidpoint<D>, R, D>>(),
+            Method::ImplicitEuler => self.plain::<LaneByLane<ImplicitEuler<D>, R, D>>(),
+            Method::ExactFlow => self.plain::<LaneByLane<ExactFlow, R, D>>(),
+        }
     }
 
+    /// In the widest vectors. A method at a time: one function that held them all would be compiled for minutes.
+    fn wide<I: Integrator<R, D>>(self) {
+        pulp::Arch::new().dispatch(Wide::<I, R, D> { advance: self, method: PhantomData });
+    }
+
+    /// As any processor can: methods that spend their time in solvers, or in scalars.
     #[inline(always)]
-    fn run_with<I: Integrator<R, D>>(self) {
+    fn plain<I: Integrator<R, D>>(self) {
         let mut integrator = I::new(self.state.position.len());
         for step in self.first..self.first + self.steps {
             self.model.begin_step(self.state);
@@ -60,26 +83,17 @@ impl<R: Real, const D: usize> Advance<'_, R, D> {
     }
 }
 
-impl<R: Real, const D: usize> pulp::NullaryFnOnce for Advance<'_, R, D> {
+/// Steps by one method, to be compiled for each kind of processor.
+struct Wide<'a, I, R, const D: usize> {
+    advance: Advance<'a, R, D>,
+    method: PhantomData<I>,
+}
+
+impl<I: Integrator<R, D>, R: Real, const D: usize> pulp::NullaryFnOnce for Wide<'_, I, R, D> {
     type Output = ();
 
     #[inline(always)]
     fn call(self) {
-        let located = self.model.stick == StickRule::Located && self.model.coulomb.is_none();
-        match self.method {
-            Method::RungeKutta2 if located => self.run_with::<LaneByLane<Located<RungeKutta2<f64, D>, D>, R, D>>(),
-            Method::RungeKutta4 if located => self.run_with::<LaneByLane<Located<RungeKutta4<f64, D>, D>, R, D>>(),
-            Method::SemiImplicitEuler => self.run_with::<SemiImplicitEuler<R, D>>(),
-            Method::ExplicitEuler => self.run_with::<ExplicitEuler<R, D>>(),
-            Method::StormerVerlet => self.run_with::<StormerVerlet<R, D>>(),
-            Method::DampedVerlet => self.run_with::<DampedVerlet<R, D>>(),
-            Method::RungeKutta2 => self.run_with::<RungeKutta2<R, D>>(),
-            Method::Leapfrog => self.run_with::<LaneByLane<Leapfrog<D>, R, D>>(),
-            Method::ImplicitMidpoint => self.run_with::<LaneByLane<ImplicitMidpoint<D>, R, D>>(),
-            Method::ImplicitEuler => self.run_with::<LaneByLane<ImplicitEuler<D>, R, D>>(),
-            Method::ExactFlow => self.run_with::<LaneByLane<ExactFlow, R, D>>(),
-            Method::Xpbd => self.run_with::<Xpbd<R, D>>(),
-            Method::RungeKutta4 => self.run_with::<RungeKutta4<R, D>>(),
-        }
+        self.advance.plain::<I>();
     }
 }

@@ -78,6 +78,19 @@ fn the_exact_flow_knows_ramp_drag_and_squares() {
 }
 
 #[test]
+fn the_exact_flow_of_stiff_worms_follows_every_event_to_the_end() {
+    // Rounding once turned resting masses to and fro without end where stiff springs start at rest.
+    for factor in [10.0, 1e3] {
+        let stiff = |method| Worm { stiffness: 1.5 * factor, damping: 0.9 * f64::sqrt(factor), method, ..Worm::GARDEN };
+        let exact = worm_at(12.0, stiff(Method::ExactFlow), StickRule::InStages, 0.3);
+        let steps = farthest(&exact, &worm_at(12.0, stiff(Method::ExactFlow), StickRule::InStages, 0.05));
+        assert!(steps < 1e-11, "× {factor}: steps of the flow matter: {steps:e}");
+        let error = farthest(&exact, &worm_at(12.0, stiff(Method::RungeKutta4), StickRule::Located, 0.002));
+        assert!(error < 1e-7, "× {factor}: {error:e}");
+    }
+}
+
+#[test]
 fn every_method_has_its_order() {
     // Smooth: no friction, the muscles driving. Damping makes Verlet's methods see an old velocity: first order.
     for damping in [0.0, 0.9] {

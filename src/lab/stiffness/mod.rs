@@ -20,8 +20,7 @@ pub use crossing::{Crossing, crossing, crossing_of, is_implicit};
 pub use record::{StiffRun, StiffScene, StiffnessStudy};
 pub use table::{STIFFNESS_COLUMNS, stiffness_csv};
 
-/// The methods that are compared: all but the exact flow, whose step only says when it is looked at, so that it cannot be chosen by its error, and which
-/// where stiff masses chatter between rest and sliding follows every event.
+/// The methods that are compared: all but the exact flow, whose step only says when it is looked at, so that it cannot be chosen by its error.
 pub fn studied_methods() -> impl Iterator<Item = Method> {
     Method::ALL.into_iter().filter(|method| *method != Method::ExactFlow)
 }

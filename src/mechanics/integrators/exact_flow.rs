@@ -23,6 +23,9 @@ pub(super) const ABOUT: About = About {
     evaluations: None,
 };
 
+/// A fraction of the time on which anything changes, in which nothing does: events nearer than this happen at once.
+const INSTANT: f64 = 1e-15;
+
 /// So many segments in one step say that the events do not end.
 const MOST_SEGMENTS: usize = 1_000_000;
 
@@ -44,6 +47,8 @@ enum Slide {
 pub struct ExactFlow {
     /// How each mass slides.
     slide: Vec<Slide>,
+    /// What the events of this instant have said of each mass.
+    turned: Vec<Option<Slide>>,
     /// The sign of S for each mass: +1 forward along x, −1 back, 0 off the spine.
     forward: Vec<f64>,
     /// +1 where the second end of a spring is at the greater x, else −1.
@@ -57,6 +62,7 @@ impl<const D: usize> Integrator<f64, D> for ExactFlow {
     fn new(particles: usize) -> Self {
         Self {
             slide: vec![Slide::Free; particles],
+            turned: vec![None; particles],
             forward: vec![0.0; particles],
             side: Vec::new(),
             clamped: Vec::new(),
@@ -73,7 +79,9 @@ impl<const D: usize> Integrator<f64, D> for ExactFlow {
         let ratchet = model.friction.is_some_and(|friction| friction.ratchet);
         self.look(model, state);
         let longest = 2.0 / series::fastest_rate(model);
-        let (mut at, mut turned) = (0.0, None);
+        let instant = INSTANT * longest;
+        self.turned.fill(None);
+        let mut at = 0.0;
         for _ in 0..MOST_SEGMENTS {
             if at >= model.dt {
                 model.note_lengths(state);
@@ -82,25 +90,29 @@ impl<const D: usize> Integrator<f64, D> for ExactFlow {
             self.series.begin(model, state, time + at);
             self.clamp(model);
             let length = self.series.until_kink(model, time + at, longest.min(model.dt - at));
-            self.settle(model, state, turned.take());
+            self.settle(model, state);
             self.series.extend(model, &self.slide, &self.side, &self.clamped, length);
             model.evaluations += self.series.terms() as f64;
-            let event = events::first(self, model, length);
+            let event = events::first(self, model, length, instant);
             let reach = event.as_ref().map_or(length, |(reach, _)| *reach);
-            self.series.write(state, reach);
-            // What is left of the step after its last segment is rounding.
-            at = if event.is_none() && length >= model.dt - at { model.dt } else { at + reach };
+            // A push that is rounding turns a mass again and again where the state goes on for it, by ever so little.
+            if event.is_none() || reach > instant {
+                self.series.write(state, reach);
+                self.turned.fill(None);
+                // What is left of the step after its last segment is rounding.
+                at = if event.is_none() && length >= model.dt - at { model.dt } else { at + reach };
+            }
             match event.map(|(_, event)| event) {
                 None => {}
                 Some(Event::Rests(mass)) => {
                     state.velocity[mass][0] = 0.0;
-                    turned = match self.slide[mass] {
-                        _ if ratchet => None,
-                        Slide::Forward => Some((mass, Slide::Back)),
-                        _ => Some((mass, Slide::Forward)),
-                    };
+                    self.turned[mass] = Some(match self.slide[mass] {
+                        _ if ratchet => Slide::Stuck,
+                        Slide::Forward => Slide::Back,
+                        _ => Slide::Forward,
+                    });
                 }
-                Some(Event::Slips(mass)) => turned = Some((mass, Slide::Forward)),
+                Some(Event::Slips(mass)) => self.turned[mass] = Some(Slide::Forward),
                 Some(Event::Passes(spring)) => {
                     self.side[spring] = -self.side[spring];
                     self.look_forward(model, state);
@@ -146,13 +158,8 @@ impl ExactFlow {
         }
     }
 
-    /// How each mass slides from here on. An event has said it of the one that `turned`.
-    fn settle<const D: usize>(
-        &mut self,
-        model: &Model<f64, D>,
-        state: &mut State<f64, D>,
-        turned: Option<(usize, Slide)>,
-    ) {
+    /// How each mass slides from here on. Events have said it of those that turned.
+    fn settle<const D: usize>(&mut self, model: &Model<f64, D>, state: &mut State<f64, D>) {
         self.slide.fill(Slide::Free);
         let friction = model.friction.filter(|friction| friction.ratchet || friction.has_drag);
         let Some(friction) = friction else { return };
@@ -172,7 +179,7 @@ impl ExactFlow {
             }
             let speed = state.velocity[mass][0] * forward;
             let push = forward * self.series.push(model, mass, &self.side, &self.clamped);
-            self.slide[mass] = if let Some((_, slide)) = turned.filter(|(turned, _)| *turned == mass) {
+            self.slide[mass] = if let Some(slide) = self.turned[mass] {
                 slide
             } else if speed > 0.0 {
                 Slide::Forward

@@ -1,5 +1,7 @@
 //! What ends a segment: the first root of any of its polynomials.
 
+use core::ops::Range;
+
 use crate::mechanics::Model;
 
 use super::{
@@ -25,49 +27,55 @@ pub(super) enum Event {
     Clamps(usize),
 }
 
-/// When the first event of a segment comes, and what it is.
-pub(super) fn first<const D: usize>(flow: &ExactFlow, model: &Model<f64, D>, length: f64) -> Option<(f64, Event)> {
+/// When the first event of a segment comes, and what it is. A mass that has turned at this instant is not asked again before it is over.
+pub(super) fn first<const D: usize>(
+    flow: &ExactFlow,
+    model: &Model<f64, D>,
+    length: f64,
+    instant: f64,
+) -> Option<(f64, Event)> {
     let series = &flow.series;
     let mut first: Option<(f64, Event)> = None;
-    let mut offer = |of: &Polynomial, sign: f64, event| {
+    let mut offer = |of: &Polynomial, sign: f64, from: f64, event| {
         let until = first.as_ref().map_or(length, |(at, _)| *at);
-        if let Some(at) = root(series, of, sign, until).filter(|at| first.is_none() || *at < until) {
+        if let Some(at) = root(series, of, sign, from..until).filter(|at| first.is_none() || *at < until) {
             first = Some((at, event));
         }
     };
     for (mass, &slide) in flow.slide.iter().enumerate() {
         let forward = flow.forward[mass];
+        let from = if flow.turned[mass].is_some() { instant } else { 0.0 };
         match slide {
             Slide::Free => {}
-            Slide::Forward => offer(&series.velocity[mass], forward, Event::Rests(mass)),
-            Slide::Back => offer(&series.velocity[mass], -forward, Event::Rests(mass)),
-            Slide::Stuck => offer(&series.push[mass], -forward, Event::Slips(mass)),
+            Slide::Forward => offer(&series.velocity[mass], forward, from, Event::Rests(mass)),
+            Slide::Back => offer(&series.velocity[mass], -forward, from, Event::Rests(mass)),
+            Slide::Stuck => offer(&series.push[mass], -forward, from, Event::Slips(mass)),
         }
     }
     for (spring, row) in model.springs.iter().enumerate() {
-        offer(&series.way(row.ends[0], row.ends[1]), flow.side[spring], Event::Passes(spring));
+        offer(&series.way(row.ends[0], row.ends[1]), flow.side[spring], 0.0, Event::Passes(spring));
     }
     for row in model.spine.iter().filter(|row| row.previous != row.particle && row.particle != row.next) {
-        offer(&series.way(row.previous, row.next), flow.forward[row.particle as usize], Event::Turns);
+        offer(&series.way(row.previous, row.next), flow.forward[row.particle as usize], 0.0, Event::Turns);
     }
     for (index, muscle) in model.muscles.iter().enumerate() {
         let spring = muscle.spring as usize;
         let sign = if flow.clamped[spring] { -1.0 } else { 1.0 };
-        offer(&series.above_least_series(index), sign, Event::Clamps(spring));
+        offer(&series.above_least_series(index), sign, 0.0, Event::Clamps(spring));
     }
     first
 }
 
-/// The first τ in 0…`length` from which on sign·p(τ) is below zero. At 0 itself it is at zero or above.
-fn root(series: &Series, of: &Polynomial, sign: f64, length: f64) -> Option<f64> {
-    if sign * of[0] > series.reach(of, length) {
+/// The first τ of a range from which on sign·p(τ) is below zero. At its beginning it is at zero or above.
+fn root(series: &Series, of: &Polynomial, sign: f64, range: Range<f64>) -> Option<f64> {
+    if range.is_empty() || sign * of[0] > series.reach(of, range.end) {
         return None;
     }
     let value = |at: f64| sign * series.value(of, at);
     let slope = |at: f64| sign * series.slope(of, at);
-    let mut from = 0.0;
+    let mut from = range.start;
     for part in 1..=PARTS {
-        let to = length * part as f64 / PARTS as f64;
+        let to = range.start + (range.end - range.start) * part as f64 / PARTS as f64;
         if value(to) < 0.0 {
             // What starts at zero and goes down at once has no root of its own: it falls from where it is.
             return Some(bisect(|at| value(at) < 0.0, from, to));
