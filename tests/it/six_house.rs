@@ -256,7 +256,8 @@ fn bad_files_are_told_what_would_be_right() {
         ("Roller(table: (left_side: (0, 2)))".into(), ["table.left_side", "(0, 2) is not allowed"]),
         ("Inchworm(half: 0)".into(), ["half", "above 0"]),
         (
-            r#"Composed(groups: [(name: "a", shape: Points([(0, 0, 0)])), (name: "a", shape: Points([(3, 0, 0)]))])"#.into(),
+            r#"Composed(groups: [(name: "a", shape: Points([(0, 0, 0)])), (name: "a", shape: Points([(3, 0, 0)]))])"#
+                .into(),
             ["groups[1].name", "give each a name of its own"],
         ),
         ("Composed(groups: [])".into(), ["particles", "at least one particle"]),
