@@ -21,7 +21,7 @@ pub(super) fn plugin(app: &mut App) {
     app.init_resource::<Herd>().add_systems(PostUpdate, (go_along, travel).chain().before(PanOrbitCameraSystemSet));
 }
 
-/// Carries the camera along with the animals as a whole, wherever its user has turned it. In the garden, which is one place, it stays.
+/// Carries the camera along with the animals as a whole, wherever its user has turned it. In the garden and on roads, which are one place, it stays.
 fn go_along(
     scene: Option<Res<CurrentScene>>,
     bodies: Option<Res<SceneBodies>>,
@@ -36,7 +36,8 @@ fn go_along(
     }
     let middle = |shown: &Shown| shown.positions().iter().sum::<Vec3>() / shown.positions().len().max(1) as f32;
     let middles: Vec<_> = bodies.0.iter().filter_map(|body| shown.get(*body).ok()).map(middle).collect();
-    if middles.is_empty() || matches!(scene.file.props, Props::Garden { .. }) {
+    let has_road = scene.file.road.is_some() || scene.file.creatures.iter().any(|placement| placement.road.is_some());
+    if middles.is_empty() || has_road || matches!(scene.file.props, Props::Garden { .. }) {
         return;
     }
     let now = middles.iter().sum::<Vec3>() / middles.len() as f32;

@@ -34,6 +34,9 @@ pub(super) fn plugin(app: &mut App) {
     );
 }
 
+/// How much of the haze roads and creatures take.
+const HAZE: f32 = 0.3;
+
 /// The paint of all creatures, made when the first one is dressed.
 #[derive(Default)]
 pub(super) struct SixKit {
@@ -62,7 +65,9 @@ pub(super) fn dress(
     commands: &mut Commands,
 ) -> Entity {
     let mut paint = |glossy: bool| {
-        let make = || paints.add(Paint::glossy(quality.shadows(), if glossy { 0.6 } else { 0.1 }));
+        let gloss = if glossy { 0.6 } else { 0.1 };
+        let finish = Vec4::new(gloss, 0.0, 0.0, HAZE);
+        let make = || paints.add(Paint { finish, ..Paint::matte(quality.shadows()) });
         kit.paints.entry(glossy).or_insert_with(make).clone()
     };
     let [glossy, dull] = [true, false].map(&mut paint);

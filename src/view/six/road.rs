@@ -10,6 +10,7 @@ use crate::{
         clay::{Clay, blend, shade, tint},
         paint::Paint,
         quality::Quality,
+        six::HAZE,
     },
 };
 
@@ -45,7 +46,9 @@ fn lay(
             continue;
         }
         laid.push(road);
-        let paint = paints.add(Paint::matte(quality.shadows()));
+        // A road is seen from afar: it takes less of the haze.
+        let paint = Paint { finish: Vec4::new(0.0, 0.0, 0.0, HAZE), ..Paint::matte(quality.shadows()) };
+        let paint = paints.add(paint);
         commands.spawn((SceneMember, Decor, Mesh3d(meshes.add(stones(road, *quality))), MeshMaterial3d(paint)));
     }
 }
@@ -64,7 +67,7 @@ fn stones(road: &Road, quality: Quality) -> Mesh {
         // As good as random, and the same every time.
         let mixed = (i as u32).wrapping_mul(2_654_435_761) >> 8;
         let part = |shift: u32| ((mixed >> shift) & 0xff) as f32 / 255.0;
-        let color = shade(blend(tint(0x8d8a80), tint(0xb7ab94), part(0)), 0.75 + 0.35 * part(8));
+        let color = shade(blend(tint(0x7d7a72), tint(0xa3967d), part(0)), 0.5 + 0.3 * part(8));
         let turn = Quat::from_rotation_y(core::f32::consts::TAU * part(16));
         let size = Vec3::new(0.92 + 0.08 * part(4), 0.94, 0.92 + 0.08 * part(12));
         let place = Transform::from_translation(stone.as_vec3()).with_rotation(turn).with_scale(size);

@@ -57,9 +57,9 @@ fn wheels(clay: &mut Clay, drive: &Drive, goals: (f64, f64), at: &[Vec3], sides:
         let tread = |t: f32| shade(tint(0x33302d), if (t * 40.0) as i32 % 2 == 0 { 1.25 } else { 0.75 });
         clay.tube(&around, sides, |_| TYRE, tread);
         for spoke in rim.iter().step_by((rim.len() / 5).max(1)) {
-            clay.tube(&[middle, 0.5 * (middle + *spoke), *spoke], 8, |_| 0.16, |_| tint(0xb8bcc2));
+            clay.tube(&[middle, 0.5 * (middle + *spoke), *spoke], 8, |_| 0.2, |_| color);
         }
-        let hub = Transform::from_translation(middle).with_scale(Vec3::splat(0.75));
+        let hub = Transform::from_translation(middle).with_scale(Vec3::splat(0.95));
         clay.ball(hub, sides, |direction| shade(color, 0.85 + 0.2 * direction.y));
     }
 }
