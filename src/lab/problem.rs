@@ -103,6 +103,13 @@ impl ProblemBody {
         self.parts(method, stick).stability_limit(0.0)
     }
 
+    /// The longest period of a muscle or a wave; nothing where it has none.
+    pub fn period(&self) -> Option<f64> {
+        let muscles = self.muscles.iter().flat_map(Muscles::iter).map(|muscle| muscle.period);
+        let waves = self.waves.as_ref().and_then(TravelingWaves::longest_period);
+        muscles.chain(waves).reduce(f64::max)
+    }
+
     fn hash(&self, hash: &mut Fnv) {
         let particles = &self.particles;
         hash.whole(particles.len() as u64);
@@ -216,9 +223,7 @@ impl Problem {
     }
 
     fn set_duration(&mut self) {
-        let muscles = self.bodies.iter().filter_map(|body| body.muscles.as_ref()).flat_map(Muscles::iter);
-        let waves = self.bodies.iter().filter_map(|body| body.waves.as_ref()?.longest_period());
-        self.period = muscles.map(|muscle| muscle.period).chain(waves).reduce(f64::max);
+        self.period = self.bodies.iter().filter_map(ProblemBody::period).reduce(f64::max);
         self.duration = self.period.map_or(WITHOUT_MUSCLES, |period| CYCLES * period);
     }
 
