@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Deserializer, Serialize, de};
 
-use super::{GardenWorm, Look, MOST_PARTICLES, StrandPlan, numbers, parse};
+use super::{GardenWorm, JellyPlan, Look, MOST_PARTICLES, StrandPlan, numbers, parse};
 use crate::body::{Ground, MassDamping, Wave};
 
 /// A creature: what `*.creature.ron` holds.
@@ -53,6 +53,8 @@ pub enum Plan {
     GardenWorm(GardenWorm),
     /// A row of cubes with travelling waves.
     Strand(StrandPlan),
+    /// A block on a cubic grid.
+    Jelly(JellyPlan),
 }
 
 /// Lists of particles and springs.
@@ -181,13 +183,14 @@ impl Creature {
             Plan::Raw(raw) => raw.particles.len(),
             Plan::GardenWorm(_) => GardenWorm::PARTICLES,
             Plan::Strand(strand) => strand.particles(),
+            Plan::Jelly(jelly) => jelly.particles(),
         }
     }
 
     /// How it wants to be drawn.
     pub fn look(&self) -> Look {
         match &self.body {
-            Plan::Raw(_) => Look::Plain,
+            Plan::Raw(_) | Plan::Jelly(_) => Look::Plain,
             Plan::Strand(strand) => Look::Strand(strand.skin),
             Plan::GardenWorm(_) => Look::GardenWorm,
         }
@@ -216,6 +219,12 @@ impl From<RawBody> for Creature {
 impl From<StrandPlan> for Creature {
     fn from(strand: StrandPlan) -> Self {
         Plan::Strand(strand).into()
+    }
+}
+
+impl From<JellyPlan> for Creature {
+    fn from(jelly: JellyPlan) -> Self {
+        Plan::Jelly(jelly).into()
     }
 }
 
