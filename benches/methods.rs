@@ -32,6 +32,7 @@ impl Body {
             springs: &self.springs,
             muscles: self.muscles.as_ref(),
             strand: None,
+            lattice: None,
             waves: None,
             guidance: Default::default(),
             friction: self.friction.as_ref(),

@@ -114,13 +114,17 @@ impl Lattice {
 
     /// The ends of all springs of a grid between neighbours of a kind, in order.
     pub fn ends_of(size: [u32; 3], kind: Neighbours) -> impl Iterator<Item = [ParticleId; 2]> {
-        let lattice = Self { size, joined: Neighbours::ALL.map(|other| other == kind) };
-        lattice.ends()
+        Self { size, joined: [true; 3] }.ends_between(kind)
     }
 
     fn ends(self) -> impl Iterator<Item = [ParticleId; 2]> {
         let kinds = Neighbours::ALL.into_iter().filter(move |kind| self.joins(*kind));
-        kinds.flat_map(|kind| kind.ways().iter()).flat_map(move |&way| self.ends_along(way))
+        kinds.flat_map(move |kind| self.ends_between(kind))
+    }
+
+    /// The ends of the springs that join neighbours of a kind, in order, whether it has them or not.
+    pub fn ends_between(self, kind: Neighbours) -> impl Iterator<Item = [ParticleId; 2]> {
+        kind.ways().iter().flat_map(move |&way| self.ends_along(way))
     }
 
     /// The ends of the springs along one way.

@@ -4,8 +4,8 @@ use bevy::{ecs::prelude::*, prelude::Name};
 
 use crate::{
     body::{
-        CoulombFriction, Gravity, Ground, Guidance, MassDamping, Muscles, Particles, SpineFriction, Springs, Strand,
-        TravelingWaves,
+        CoulombFriction, Gravity, Ground, Guidance, Lattice, MassDamping, Muscles, Particles, SpineFriction, Springs,
+        Strand, TravelingWaves,
     },
     creatures::FileError,
     mechanics::{
@@ -38,6 +38,8 @@ pub struct ProblemBody {
     pub muscles: Option<Muscles>,
     /// The lattice that it is, if it is one.
     pub strand: Option<Strand>,
+    /// The block on a grid that it is, if it is one.
+    pub lattice: Option<Lattice>,
     /// The waves that travel along the lattice, if any do.
     pub waves: Option<TravelingWaves>,
     /// Its friction, if it has any.
@@ -69,6 +71,7 @@ impl ProblemBody {
             springs: entity.get::<Springs>()?.clone(),
             muscles: entity.get::<Muscles>().filter(|muscles| !muscles.is_empty()).cloned(),
             strand: entity.get::<Strand>().copied(),
+            lattice: entity.get::<Lattice>().copied(),
             waves: entity.get::<TravelingWaves>().cloned(),
             friction: entity.get::<SpineFriction>().cloned(),
             coulomb: entity.get::<CoulombFriction>().cloned(),
@@ -86,6 +89,7 @@ impl ProblemBody {
             springs: &self.springs,
             muscles: self.muscles.as_ref(),
             strand: self.strand,
+            lattice: self.lattice,
             waves: self.waves.as_ref(),
             guidance: Guidance::default(),
             friction: self.friction.as_ref(),

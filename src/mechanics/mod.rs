@@ -13,6 +13,7 @@ mod forces;
 mod friction;
 mod ground;
 pub mod integrators;
+mod lattice;
 pub mod metrics;
 mod model;
 mod quad;

@@ -93,6 +93,20 @@ impl Real for f64 {
 #[repr(align(64))]
 pub struct Lanes<const W: usize>([f64; W]);
 
+impl<const W: usize> From<[f64; W]> for Lanes<W> {
+    #[inline(always)]
+    fn from(values: [f64; W]) -> Self {
+        Self(values)
+    }
+}
+
+impl<const W: usize> From<Lanes<W>> for [f64; W] {
+    #[inline(always)]
+    fn from(lanes: Lanes<W>) -> Self {
+        lanes.0
+    }
+}
+
 macro_rules! lanewise {
     ($trait:ident, $method:ident, $assign_trait:ident, $assign_method:ident, $op:tt) => {
         lanewise!($trait, $method, $op);

@@ -11,7 +11,7 @@ use bevy::{
 
 use crate::{
     body::{
-        CoulombFriction, Gravity, Ground, MassDamping, Muscles, Particles, SpineFriction, Springs, Strand,
+        CoulombFriction, Gravity, Ground, Lattice, MassDamping, Muscles, Particles, SpineFriction, Springs, Strand,
         TravelingWaves,
     },
     mechanics::{
@@ -28,6 +28,7 @@ pub(super) struct Parts {
     springs: &'static Springs,
     muscles: Option<&'static Muscles>,
     strand: Option<&'static Strand>,
+    lattice: Option<&'static Lattice>,
     waves: Option<&'static TravelingWaves>,
     friction: Option<&'static SpineFriction>,
     coulomb: Option<&'static CoulombFriction>,
@@ -46,6 +47,7 @@ impl PartsItem<'_, '_> {
             springs: self.springs,
             muscles: self.muscles,
             strand: self.strand.copied(),
+            lattice: self.lattice.copied(),
             waves: self.waves,
             guidance: steer.map(Steer::guidance).unwrap_or_default(),
             friction: self.friction,
@@ -67,6 +69,7 @@ pub fn body_parts(entity: EntityRef<'_>) -> Option<BodyParts<'_>> {
         springs: entity.get()?,
         muscles: entity.get(),
         strand: entity.get().copied(),
+        lattice: entity.get().copied(),
         waves: entity.get(),
         guidance: entity.get().map(Steer::guidance).unwrap_or_default(),
         friction: entity.get(),
@@ -125,6 +128,7 @@ type Changes = Or<(
     Changed<CoulombFriction>,
     Changed<Muscles>,
     Changed<Strand>,
+    Changed<Lattice>,
     Changed<TravelingWaves>,
     Changed<Gravity>,
     Changed<Ground>,
@@ -182,7 +186,7 @@ fn topology(body: &BodyParts<'_>) -> u64 {
     if let Some(friction) = body.friction {
         (friction.ratchet(), friction.width(), friction.spine()).hash(&mut hasher);
     }
-    body.strand.hash(&mut hasher);
+    (body.strand, body.lattice).hash(&mut hasher);
     for wave in body.waves.into_iter().flat_map(TravelingWaves::iter) {
         (wave.kind, wave.form).hash(&mut hasher);
     }
@@ -211,6 +215,12 @@ fn misfit(body: &BodyParts<'_>) -> Option<String> {
     if body.strand.is_some_and(|strand| strand.springs() != body.springs.len() || strand.particles() != particles) {
         return Some(format!(
             "its strand was made for another body; this one has {particles} particles and {} springs",
+            body.springs.len()
+        ));
+    }
+    if body.lattice.is_some_and(|lattice| lattice.springs() != body.springs.len() || lattice.particles() != particles) {
+        return Some(format!(
+            "its lattice was made for another body; this one has {particles} particles and {} springs",
             body.springs.len()
         ));
     }

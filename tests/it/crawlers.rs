@@ -86,6 +86,7 @@ impl Crawler {
             springs: &springs,
             muscles: Some(&muscles),
             strand: None,
+            lattice: None,
             waves: None,
             guidance: Default::default(),
             friction: None,

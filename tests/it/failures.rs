@@ -33,6 +33,7 @@ impl Row {
             springs: &self.springs,
             muscles: Some(&self.muscles),
             strand: None,
+            lattice: None,
             waves: None,
             guidance: Default::default(),
             friction: None,

@@ -18,6 +18,7 @@ fn parts<'a>((particles, springs): &'a (Particles, Springs), method: Method) -> 
         springs,
         muscles: None,
         strand: None,
+        lattice: None,
         waves: None,
         guidance: Default::default(),
         friction: None,

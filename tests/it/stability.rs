@@ -106,6 +106,7 @@ fn the_bound_is_the_true_limit_of_a_long_chain_and_safe_for_unequal_masses() {
             springs,
             muscles: None,
             strand: None,
+            lattice: None,
             waves: None,
             guidance: Default::default(),
             friction: None,

@@ -90,6 +90,7 @@ impl Body {
             springs: &self.springs,
             muscles: Some(&self.muscles),
             strand: None,
+            lattice: None,
             waves: None,
             guidance: Default::default(),
             friction: Some(&self.friction),
