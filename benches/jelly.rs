@@ -47,6 +47,7 @@ fn parts(body: &Body) -> BodyParts<'_> {
         muscles: None,
         strand: None,
         lattice: body.block.map(|(lattice, _)| lattice),
+        tearing: None,
         waves: None,
         guidance: Default::default(),
         friction: None,

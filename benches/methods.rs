@@ -33,6 +33,7 @@ impl Body {
             muscles: self.muscles.as_ref(),
             strand: None,
             lattice: None,
+            tearing: None,
             waves: None,
             guidance: Default::default(),
             friction: self.friction.as_ref(),

@@ -21,6 +21,7 @@ mod muscles;
 mod particles;
 mod springs;
 mod strand;
+mod tearing;
 mod waves;
 
 pub use coulomb::{Coefficients, CoulombFriction};
@@ -37,4 +38,5 @@ pub use muscles::{LEAST_REST_FRACTION, Muscle, Muscles, Wave};
 pub use particles::{Particle, ParticleId, Particles};
 pub use springs::{Spring, SpringId, Springs};
 pub use strand::{Strand, StrandSpring};
+pub use tearing::Tearing;
 pub use waves::{TravelingWave, TravelingWaves, WaveDirection, WaveKind};

@@ -23,6 +23,9 @@ pub struct Creature {
     /// Damping in proportion to mass, as `Rate(c)` or as the `PerStep(λ)` of damped Verlet. Left out: none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub damping: Option<MassDamping>,
+    /// The strain l/L − 1 at which its springs tear for good, above zero. Left out: they hold.
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "numbers::optional_positive")]
+    pub tear: Option<f64>,
     /// The ground that it stands on where its file is run alone; a scene has its own. Left out: none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ground: Option<Ground>,
@@ -200,7 +203,7 @@ impl Creature {
 impl From<Plan> for Creature {
     /// A creature with what its kind needs and nothing else.
     fn from(body: Plan) -> Self {
-        Self { version: 1, body, friction: None, coulomb: None, damping: None, ground: None, gravity: None }
+        Self { version: 1, body, friction: None, coulomb: None, damping: None, tear: None, ground: None, gravity: None }
     }
 }
 

@@ -10,7 +10,7 @@ use bevy::{
 use super::{Attitude, Coulomb, Creature, Friction, GardenWorm, Look, Plan, RawBody, RawParticle, StrandPlan};
 use crate::body::{
     BodyError, Coefficients, CoulombFriction, Lattice, MassDamping, Muscle, Muscles, Particle, ParticleId, Particles,
-    SpineFriction, Spring, SpringId, Springs, Strand, TravelingWaves,
+    SpineFriction, Spring, SpringId, Springs, Strand, Tearing, TravelingWaves,
 };
 
 /// Where a creature is put, and which way it looks.
@@ -63,6 +63,8 @@ pub struct Body {
     pub coulomb: Option<CoulombFriction>,
     /// Its damping by what surrounds it, if any.
     pub damping: Option<MassDamping>,
+    /// When its springs tear, if they do.
+    pub tearing: Option<Tearing>,
     /// How it wants to be drawn.
     pub look: Look,
 }
@@ -93,6 +95,9 @@ impl EntityCommand for Body {
         if let Some(damping) = self.damping {
             entity.insert(damping);
         }
+        if let Some(tearing) = self.tearing {
+            entity.insert(tearing);
+        }
     }
 }
 
@@ -108,6 +113,7 @@ impl Creature {
             Some(MassDamping::Rate(rate)) => Some(MassDamping::rate(rate)?),
             Some(MassDamping::PerStep(part)) => Some(MassDamping::per_step(part)?),
         };
+        let tearing = self.tear.map(Tearing::new).transpose()?;
         let (raw, kind) = match &self.body {
             Plan::Raw(raw) => {
                 (Cow::Borrowed(raw), Friction { drag: Some(0.0), brake: Some(0.0), ..Friction::default() })
@@ -124,13 +130,17 @@ impl Creature {
                 if let Some(field) = self.friction.map(|_| "friction").or_else(|| self.coulomb.map(|_| "coulomb")) {
                     return Err(no_spine(field));
                 }
-                return Ok(Body { damping, look: self.look(), ..jelly.body(pose)? });
+                return Ok(Body { damping, tearing, look: self.look(), ..jelly.body(pose)? });
             }
         };
         let particles = particles(&raw, pose)?;
         let springs = springs(&raw, &particles)?;
         let muscles = muscles(&raw, &springs)?;
         let (strand, waves) = match &self.body {
+            Plan::Strand(_) if tearing.is_some() => {
+                let problem = "the springs of a strand cannot tear; leave it out".into();
+                return Err(BodyError::Inconsistent { path: "tear".into(), problem });
+            }
             Plan::Strand(plan) => (Some(plan.strand(&springs)?), Some(plan.waves()?)),
             Plan::Raw(_) | Plan::GardenWorm(_) | Plan::Jelly(_) => (None, None),
         };
@@ -151,7 +161,7 @@ impl Creature {
         }
         let coulomb = self.coulomb.map(|coulomb| coulomb_friction(&raw, coulomb, &particles)).transpose()?;
         let look = self.look();
-        Ok(Body { particles, springs, muscles, strand, waves, block: None, friction, coulomb, damping, look })
+        Ok(Body { particles, springs, muscles, strand, waves, block: None, friction, coulomb, damping, tearing, look })
     }
 }
 

@@ -165,6 +165,7 @@ impl JellyPlan {
             friction: None,
             coulomb: None,
             damping: None,
+            tearing: None,
             look: Look::Plain,
         })
     }

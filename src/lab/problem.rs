@@ -5,7 +5,7 @@ use bevy::{ecs::prelude::*, prelude::Name};
 use crate::{
     body::{
         CoulombFriction, Gravity, Ground, Guidance, Lattice, MassDamping, Muscles, Particles, SpineFriction, Springs,
-        Strand, TravelingWaves,
+        Strand, Tearing, TravelingWaves,
     },
     creatures::FileError,
     mechanics::{
@@ -40,6 +40,8 @@ pub struct ProblemBody {
     pub strand: Option<Strand>,
     /// The block on a grid that it is, if it is one.
     pub lattice: Option<Lattice>,
+    /// When its springs tear, if they do.
+    pub tearing: Option<Tearing>,
     /// The waves that travel along the lattice, if any do.
     pub waves: Option<TravelingWaves>,
     /// Its friction, if it has any.
@@ -72,6 +74,7 @@ impl ProblemBody {
             muscles: entity.get::<Muscles>().filter(|muscles| !muscles.is_empty()).cloned(),
             strand: entity.get::<Strand>().copied(),
             lattice: entity.get::<Lattice>().copied(),
+            tearing: entity.get::<Tearing>().cloned(),
             waves: entity.get::<TravelingWaves>().cloned(),
             friction: entity.get::<SpineFriction>().cloned(),
             coulomb: entity.get::<CoulombFriction>().cloned(),
@@ -90,6 +93,7 @@ impl ProblemBody {
             muscles: self.muscles.as_ref(),
             strand: self.strand,
             lattice: self.lattice,
+            tearing: self.tearing.as_ref(),
             waves: self.waves.as_ref(),
             guidance: Guidance::default(),
             friction: self.friction.as_ref(),
@@ -142,6 +146,7 @@ impl ProblemBody {
         // Nor does it know strands and grounds.
         hash.whole(u64::from(self.strand.is_some()));
         hash.whole(u64::from(self.ground.is_some()));
+        hash.number(self.tearing.as_ref().map_or(f64::INFINITY, Tearing::strain));
         hash.number(self.mass_damping.map_or(0.0, |damping| damping.rate_at(1.0)));
     }
 }

@@ -20,6 +20,7 @@ mod quad;
 mod real;
 mod stability;
 mod strand;
+mod tearing;
 mod wave;
 
 pub use advance::{Advance, Timeline};

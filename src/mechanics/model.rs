@@ -2,7 +2,7 @@
 
 use crate::body::{
     CoulombFriction, Epoch, Gravity, Ground, Guidance, Lattice, MassDamping, Muscle, Muscles, ParticleId, Particles,
-    SpineFriction, Spring, Springs, Strand, TravelingWaves, Wave, WaveKind,
+    SpineFriction, Spring, Springs, Strand, Tearing, TravelingWaves, Wave, WaveKind,
 };
 
 use super::{
@@ -13,6 +13,7 @@ use super::{
     integrators::{Method, StickRule},
     lattice::LatticeRows,
     strand::StrandRows,
+    tearing::TearingRows,
 };
 
 /// Components of one body, borrowed.
@@ -28,6 +29,8 @@ pub struct BodyParts<'a> {
     pub strand: Option<Strand>,
     /// The block on a grid that it is, if it is one.
     pub lattice: Option<Lattice>,
+    /// When its springs tear, if they do.
+    pub tearing: Option<&'a Tearing>,
     /// The waves that travel along the lattice, if any do.
     pub waves: Option<&'a TravelingWaves>,
     /// How its waves are guided.
@@ -79,6 +82,7 @@ impl BodyParts<'_> {
             && self.particles.len() == other.particles.len()
             && self.springs.ends() == other.springs.ends()
             && driven(self.muscles).eq(driven(other.muscles))
+            && self.tearing.is_some() == other.tearing.is_some()
             && (self.strand, self.lattice) == (other.strand, other.lattice)
             && self.waves.is_some() == other.waves.is_some()
             && traveling(self.waves).eq(traveling(other.waves))
@@ -265,6 +269,7 @@ pub struct Model<R, const D: usize> {
     pub(super) strand: Option<StrandRows<R>>,
     /// A block that [is regular](BodyParts::is_regular); its springs are not among `springs`.
     pub(super) lattice: Option<LatticeRows>,
+    pub(super) tearing: Option<TearingRows<R>>,
     pub(super) spine: Vec<SpineRow>,
     /// Where the sections of the spine are more than single particles.
     pub(super) sections: Option<Sections>,
@@ -337,6 +342,7 @@ impl<R: Real, const D: usize> Model<R, D> {
             muscles: body.muscles.into_iter().flat_map(Muscles::iter).map(MuscleRow::idle).collect(),
             strand: body.strand.map(|strand| StrandRows::idle(strand, body.waves)),
             lattice,
+            tearing: body.tearing.map(|_| TearingRows::idle(body.springs.len())),
             spine,
             sections,
             friction: body.friction.map(|friction| FrictionRow {
@@ -374,6 +380,7 @@ impl<R: Real, const D: usize> Model<R, D> {
             row.rest_length.set_lane(lane, spring.rest_length);
             row.longest.set_lane(lane, LONGEST_STRETCH * spring.rest_length);
         }
+        self.set_tearing_lane(lane, body);
         let muscles = body.muscles.into_iter().flat_map(|muscles| muscles.iter().zip(muscles.epochs()));
         for (row, (muscle, &epoch)) in self.muscles.iter_mut().zip(muscles) {
             row.set_lane(lane, muscle, epoch);
@@ -449,6 +456,7 @@ impl<R: Real, const D: usize> Model<R, D> {
                 .collect(),
             strand: self.strand.as_ref().map(|strand| strand.lane(lane)),
             lattice: self.lattice.clone(),
+            tearing: self.tearing.as_ref().map(|rows| rows.lane(lane)),
             spine: self.spine.clone(),
             sections: self.sections.clone(),
             friction: self.friction.as_ref().map(|row| FrictionRow {

@@ -87,6 +87,7 @@ impl Crawler {
             muscles: Some(&muscles),
             strand: None,
             lattice: None,
+            tearing: None,
             waves: None,
             guidance: Default::default(),
             friction: None,

@@ -34,6 +34,7 @@ impl Row {
             muscles: Some(&self.muscles),
             strand: None,
             lattice: None,
+            tearing: None,
             waves: None,
             guidance: Default::default(),
             friction: None,

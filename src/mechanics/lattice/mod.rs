@@ -52,6 +52,7 @@ impl BodyParts<'_> {
             };
             self.muscles.is_none()
                 && self.strand.is_none()
+                && self.tearing.is_none()
                 && self.method.asks_forces_alone()
                 && Neighbours::ALL.into_iter().all(alike)
         })
