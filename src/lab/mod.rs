@@ -4,6 +4,7 @@ mod cache;
 pub mod chart;
 mod choose;
 mod error;
+pub mod exercise;
 mod gallery;
 mod hash;
 pub mod limits;
