@@ -47,6 +47,7 @@ fn parts(body: &Body) -> BodyParts<'_> {
         muscles: None,
         strand: None,
         lattice: body.block.map(|(lattice, _)| lattice),
+        pull: None,
         tearing: None,
         waves: None,
         guidance: Default::default(),

@@ -33,6 +33,7 @@ impl Body {
             muscles: self.muscles.as_ref(),
             strand: None,
             lattice: None,
+            pull: None,
             tearing: None,
             waves: None,
             guidance: Default::default(),

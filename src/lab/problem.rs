@@ -93,6 +93,7 @@ impl ProblemBody {
             muscles: self.muscles.as_ref(),
             strand: self.strand,
             lattice: self.lattice,
+            pull: None,
             tearing: self.tearing.as_ref(),
             waves: self.waves.as_ref(),
             guidance: Guidance::default(),

@@ -64,6 +64,15 @@ impl<R: Real, const D: usize> Model<R, D> {
     /// time, and gravity. A spring of no length has no direction and pulls nowhere.
     #[inline(always)]
     pub fn forces(&mut self, time: f64, position: &[[R; D]], velocity: &[[R; D]], acceleration: &mut [[R; D]]) {
+        self.own_forces(time, position, velocity, acceleration);
+        if self.pull.is_some() {
+            self.pull(position, velocity, acceleration);
+        }
+    }
+
+    /// The same without the pull of a hand.
+    #[inline(always)]
+    fn own_forces(&mut self, time: f64, position: &[[R; D]], velocity: &[[R; D]], acceleration: &mut [[R; D]]) {
         let zero = R::splat(0.0);
         self.evaluations += R::splat(1.0);
         if self.lattice.is_some() {

@@ -16,6 +16,7 @@ pub mod integrators;
 mod lattice;
 pub mod metrics;
 mod model;
+mod pull;
 mod quad;
 mod real;
 mod stability;

@@ -2,7 +2,7 @@
 
 use crate::body::{
     CoulombFriction, Epoch, Gravity, Ground, Guidance, Lattice, MassDamping, Muscle, Muscles, ParticleId, Particles,
-    SpineFriction, Spring, Springs, Strand, Tearing, TravelingWaves, Wave, WaveKind,
+    Pull, SpineFriction, Spring, Springs, Strand, Tearing, TravelingWaves, Wave, WaveKind,
 };
 
 use super::{
@@ -12,6 +12,7 @@ use super::{
     ground::Contact,
     integrators::{Method, StickRule},
     lattice::LatticeRows,
+    pull::PullRow,
     strand::StrandRows,
     tearing::TearingRows,
 };
@@ -29,6 +30,8 @@ pub struct BodyParts<'a> {
     pub strand: Option<Strand>,
     /// The block on a grid that it is, if it is one.
     pub lattice: Option<Lattice>,
+    /// Where a hand pulls at it, if one does.
+    pub pull: Option<Pull>,
     /// When its springs tear, if they do.
     pub tearing: Option<&'a Tearing>,
     /// The waves that travel along the lattice, if any do.
@@ -64,7 +67,10 @@ impl BodyParts<'_> {
 
     /// Whether it gains from being stepped side by side with bodies of equal topology.
     pub fn side_by_side(&self) -> bool {
-        self.method.side_by_side() && !self.is_regular() && !(self.stick == StickRule::Located && self.method.locates())
+        self.method.side_by_side()
+            && self.pull.is_none()
+            && !self.is_regular()
+            && !(self.stick == StickRule::Located && self.method.locates())
     }
 
     /// Whether both bodies can be stepped side by side: the same graph of springs, muscles and spine, and the same rules; numbers may differ.
@@ -82,7 +88,7 @@ impl BodyParts<'_> {
             && self.particles.len() == other.particles.len()
             && self.springs.ends() == other.springs.ends()
             && driven(self.muscles).eq(driven(other.muscles))
-            && self.tearing.is_some() == other.tearing.is_some()
+            && (self.tearing.is_some(), self.pull.is_some()) == (other.tearing.is_some(), other.pull.is_some())
             && (self.strand, self.lattice) == (other.strand, other.lattice)
             && self.waves.is_some() == other.waves.is_some()
             && traveling(self.waves).eq(traveling(other.waves))
@@ -270,6 +276,7 @@ pub struct Model<R, const D: usize> {
     /// A block that [is regular](BodyParts::is_regular); its springs are not among `springs`.
     pub(super) lattice: Option<LatticeRows>,
     pub(super) tearing: Option<TearingRows<R>>,
+    pub(super) pull: Option<PullRow>,
     pub(super) spine: Vec<SpineRow>,
     /// Where the sections of the spine are more than single particles.
     pub(super) sections: Option<Sections>,
@@ -342,6 +349,7 @@ impl<R: Real, const D: usize> Model<R, D> {
             muscles: body.muscles.into_iter().flat_map(Muscles::iter).map(MuscleRow::idle).collect(),
             strand: body.strand.map(|strand| StrandRows::idle(strand, body.waves)),
             lattice,
+            pull: PullRow::of(body),
             tearing: body.tearing.map(|_| TearingRows::idle(body.springs.len())),
             spine,
             sections,
@@ -456,6 +464,7 @@ impl<R: Real, const D: usize> Model<R, D> {
                 .collect(),
             strand: self.strand.as_ref().map(|strand| strand.lane(lane)),
             lattice: self.lattice.clone(),
+            pull: self.pull,
             tearing: self.tearing.as_ref().map(|rows| rows.lane(lane)),
             spine: self.spine.clone(),
             sections: self.sections.clone(),

@@ -46,6 +46,12 @@ pub trait Real:
 
     /// Whether any lane is below `bound`: for leaving out work whose result no lane would take.
     fn any_below(self, bound: Self) -> bool;
+
+    /// Numbers that stand alone as what they are; nothing of several side by side.
+    fn alone(values: &[Self]) -> Option<&[f64]>;
+
+    /// The same, to be changed.
+    fn alone_mut(values: &mut [Self]) -> Option<&mut [f64]>;
 }
 
 impl Real for f64 {
@@ -84,6 +90,14 @@ impl Real for f64 {
     #[inline(always)]
     fn any_below(self, bound: Self) -> bool {
         self < bound
+    }
+
+    fn alone(values: &[Self]) -> Option<&[f64]> {
+        Some(values)
+    }
+
+    fn alone_mut(values: &mut [Self]) -> Option<&mut [f64]> {
+        Some(values)
     }
 }
 
@@ -197,5 +211,13 @@ impl<const W: usize> Real for Lanes<W> {
     #[inline(always)]
     fn any_below(self, bound: Self) -> bool {
         self.0.iter().zip(&bound.0).any(|(value, bound)| value < bound)
+    }
+
+    fn alone(_: &[Self]) -> Option<&[f64]> {
+        None
+    }
+
+    fn alone_mut(_: &mut [Self]) -> Option<&mut [f64]> {
+        None
     }
 }

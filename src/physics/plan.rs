@@ -11,8 +11,8 @@ use bevy::{
 
 use crate::{
     body::{
-        CoulombFriction, Gravity, Ground, Lattice, MassDamping, Muscles, Particles, SpineFriction, Springs, Strand,
-        Tearing, TravelingWaves,
+        CoulombFriction, Gravity, Ground, Lattice, MassDamping, Muscles, Particles, Pull, SpineFriction, Springs,
+        Strand, Tearing, TravelingWaves,
     },
     mechanics::{
         BodyParts,
@@ -29,6 +29,7 @@ pub(super) struct Parts {
     muscles: Option<&'static Muscles>,
     strand: Option<&'static Strand>,
     lattice: Option<&'static Lattice>,
+    pull: Option<&'static Pull>,
     waves: Option<&'static TravelingWaves>,
     friction: Option<&'static SpineFriction>,
     coulomb: Option<&'static CoulombFriction>,
@@ -53,6 +54,7 @@ impl PartsItem<'_, '_> {
             muscles: self.muscles,
             strand: self.strand.copied(),
             lattice: self.lattice.copied(),
+            pull: self.pull.copied(),
             tearing,
             waves: self.waves,
             guidance: steer.map(Steer::guidance).unwrap_or_default(),
@@ -76,6 +78,7 @@ pub fn body_parts(entity: EntityRef<'_>) -> Option<BodyParts<'_>> {
         muscles: entity.get(),
         strand: entity.get().copied(),
         lattice: entity.get().copied(),
+        pull: entity.get().copied(),
         tearing: entity.get(),
         waves: entity.get(),
         guidance: entity.get().map(Steer::guidance).unwrap_or_default(),

@@ -87,6 +87,7 @@ impl Crawler {
             muscles: Some(&muscles),
             strand: None,
             lattice: None,
+            pull: None,
             tearing: None,
             waves: None,
             guidance: Default::default(),

@@ -34,6 +34,7 @@ impl Row {
             muscles: Some(&self.muscles),
             strand: None,
             lattice: None,
+            pull: None,
             tearing: None,
             waves: None,
             guidance: Default::default(),

@@ -2,7 +2,9 @@
 
 use bevy::{math::DVec3, prelude::*};
 use wriggle::{
-    body::{Gravity, Ground, Lattice, MassDamping, Neighbours, Particle, ParticleId, Particles, SpringId, Tearing},
+    body::{
+        Gravity, Ground, Lattice, MassDamping, Neighbours, Particle, ParticleId, Particles, Pull, SpringId, Tearing,
+    },
     creatures::{Body, Creature, JellyPlan, NeighboursPlan, Pose, Rotation, SpringPlan},
     mechanics::{angular_momentum, elastic_energy, integrators::Method, kinetic_energy, metrics::BlockShape, momentum},
     physics::{Clock, Frozen, Restart, StartState, body_parts},
@@ -240,6 +242,62 @@ fn an_undamped_block_keeps_its_energy_within_the_bounds_of_verlet() {
         // Within θ/2 with θ = ω_max·dt, Verlet's energy being that of a nearby system.
         assert!((energy(&app) / start - 1.0).abs() < 0.5 * dt * 3.68, "{}", energy(&app) / start);
     }
+}
+
+/// Energy of motion, of springs and of height.
+fn energy(app: &App, block: Entity, gravity: f64) -> f64 {
+    let parts = body_parts(app.world().entity(block)).unwrap();
+    let height: f64 = parts.particles.positions().map(|x| gravity * x.y).sum();
+    kinetic_energy(parts.particles) + elastic_energy(&parts, 0.0) + height
+}
+
+#[test]
+fn a_drag_adds_no_energy_once_let_go() {
+    for damping in [Some(MassDamping::Rate(0.05)), None] {
+        let plan = cube(4, &Neighbours::ALL, 0.0);
+        let (mut app, block) = falling(plan, Method::StormerVerlet, damping, 0.1, 10);
+        app.update();
+        let before = energy(&app, block, 0.001);
+        let pull = Pull { particle: ParticleId(63), target: DVec3::new(6.0, 9.0, 2.0) };
+        app.world_mut().entity_mut(block).insert(pull);
+        for _ in 0..60 {
+            app.update();
+        }
+        let lifted = particles(&app, block).center().y;
+        assert!(lifted > 3.0, "is lifted to {lifted}");
+        app.world_mut().entity_mut(block).remove::<Pull>();
+        let (mut last, start) = (energy(&app, block, 0.001), energy(&app, block, 0.001));
+        assert!(start > before);
+        // Verlet's energy is that of a nearby system, within ω·dt/2 of what moves.
+        let slack = 0.5 * 0.1 * 3.68 * (start - before);
+        for _ in 0..200 {
+            app.update();
+            let now = energy(&app, block, 0.001);
+            match damping {
+                Some(_) => assert!(now < last + 0.02 * slack, "rises from {last} to {now}"),
+                None => assert!(now < start + slack, "rises from {start} to {now}"),
+            }
+            last = now;
+        }
+    }
+}
+
+#[test]
+fn a_pull_is_capped_and_changes_no_bit_with_the_ticks() {
+    let run = |steps: u64| {
+        let (mut app, block) = app_of(cube(3, &Neighbours::ALL, 0.1), Method::SemiImplicitEuler, 0.1, steps);
+        let target = DVec3::splat(1e6);
+        app.world_mut().entity_mut(block).insert(Pull { particle: ParticleId(26), target });
+        while app.world().resource::<Clock>().step() < 60 {
+            app.update();
+        }
+        shape(&app, block);
+        (momentum(particles(&app, block)), crate::support::bits(particles(&app, block)))
+    };
+    let (momentum, bits) = run(60);
+    // At a corner there are seven springs of stiffness 1, and the pull is at most as that of ¼ of them over four lengths.
+    assert!((momentum.length() - 7.0 * 6.0).abs() < 0.05 * 42.0, "{momentum}");
+    assert_eq!(run(1).1, bits);
 }
 
 #[test]

@@ -24,6 +24,7 @@ fn parts(body: &Body, method: Method) -> BodyParts<'_> {
         muscles: None,
         strand: None,
         lattice: body.block.map(|(lattice, _)| lattice),
+        pull: None,
         tearing: None,
         waves: None,
         guidance: Default::default(),

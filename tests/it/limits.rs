@@ -19,6 +19,7 @@ fn parts<'a>((particles, springs): &'a (Particles, Springs), method: Method) -> 
         muscles: None,
         strand: None,
         lattice: None,
+        pull: None,
         tearing: None,
         waves: None,
         guidance: Default::default(),

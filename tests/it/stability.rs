@@ -107,6 +107,7 @@ fn the_bound_is_the_true_limit_of_a_long_chain_and_safe_for_unequal_masses() {
             muscles: None,
             strand: None,
             lattice: None,
+            pull: None,
             tearing: None,
             waves: None,
             guidance: Default::default(),

@@ -91,6 +91,7 @@ impl Body {
             muscles: Some(&self.muscles),
             strand: None,
             lattice: None,
+            pull: None,
             tearing: None,
             waves: None,
             guidance: Default::default(),

@@ -80,9 +80,10 @@ impl Block {
 
     /// Lets its masses tremble a little, each its own way; along one axis where nothing holds it against shear.
     fn trembling(mut self, speed: f64) -> Result<Self, BodyError> {
-        let one_axis = self.body.block.is_some_and(|(lattice, _)| {
-            !lattice.joins(Neighbours::Faces) && !lattice.joins(Neighbours::Cubes)
-        });
+        let one_axis = self
+            .body
+            .block
+            .is_some_and(|(lattice, _)| !lattice.joins(Neighbours::Faces) && !lattice.joins(Neighbours::Cubes));
         let ways = if one_axis { DVec3::Y } else { DVec3::ONE };
         for i in 0..self.body.particles.len() as u32 {
             let wobble = |prime: u32, modulus: u32| f64::from(i * prime % modulus) / f64::from(modulus) - 0.5;
@@ -101,6 +102,7 @@ impl Block {
             muscles: None,
             strand: None,
             lattice: self.body.block.map(|(lattice, _)| lattice),
+            pull: None,
             tearing: None,
             waves: None,
             guidance: Default::default(),

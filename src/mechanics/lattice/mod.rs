@@ -10,17 +10,21 @@
 
 mod join;
 mod layer;
-
-use core::ops::Range;
+mod sweep;
+mod tasks;
 
 use bevy::tasks::ComputeTaskPool;
 
 use crate::body::{Lattice, Neighbours};
 
-use super::{BodyParts, Lanes, Model, Real, State, model::LONGEST_STRETCH};
+use super::{BodyParts, Model, Real, State, ground::ContactKind, model::LONGEST_STRETCH};
 
-use join::{Ask, LANES, Way, join};
+use join::{Ask, LANES, Way};
 use layer::Layer;
+use sweep::{Grid, Slab, run};
+use tasks::{Accelerate, Measure, Move};
+
+pub(super) use tasks::KickDrift;
 
 /// A thread is worth its start for so many particles.
 const PARTICLES_A_THREAD: usize = 4096;
@@ -118,155 +122,128 @@ impl LatticeRows {
         })
     }
 
-    /// Computes slab by slab what the springs accelerate every mass with, and whether one is too long.
-    #[inline(always)]
-    fn forces<R: Real, const D: usize>(&mut self, masses: &Masses<'_, R, D>, acceleration: &mut [[R; D]]) -> bool {
+    /// Parts the layers into slabs, each with its scratch, its first layer and how many it has. `task` makes what is done with each.
+    fn slabs_of<'a, T>(&'a mut self, ask: Ask, mut task: impl FnMut(usize, usize) -> T) -> Vec<Slab<'a, T>> {
         let [across, along, layers] = self.lattice.size();
-        let (layer, slabs) = (across * along, self.scratch.len());
-        let Self { within, onward, masks, damped, scratch, .. } = self;
-        let ask = if *damped { Ask::Damped } else { Ask::Stiff };
-        let grid = Grid { within, onward, masks, layers, layer };
-        let share = layers.div_ceil(slabs);
-        let slabs = scratch.iter_mut().zip(acceleration.chunks_mut(share * layer));
-        let slabs = slabs.enumerate().map(|(i, (scratch, acceleration))| {
-            let range = i * share..i * share + acceleration.len() / layer;
-            Slab { grid, ask, masses: *masses, range, scratch, acceleration }
-        });
-        run(slabs.collect())
-    }
-
-    /// Whether a spring is too long.
-    #[inline(always)]
-    fn is_too_long<R: Real, const D: usize>(&mut self, masses: &Masses<'_, R, D>) -> bool {
-        let [across, along, layers] = self.lattice.size();
-        let (layer, slabs) = (across * along, self.scratch.len());
         let Self { within, onward, masks, scratch, .. } = self;
-        let grid = Grid { within, onward, masks, layers, layer };
-        let share = layers.div_ceil(slabs);
-        let slab = |(i, scratch): (usize, _)| {
-            let range = i * share..((i + 1) * share).min(layers);
-            Slab { grid, ask: Ask::Lengths, masses: *masses, range, scratch, acceleration: &mut [] }
-        };
-        run(scratch.iter_mut().take(layers.div_ceil(share)).enumerate().map(slab).collect())
+        let grid = Grid { within, onward, masks, layers, layer: across * along };
+        let share = layers.div_ceil(scratch.len());
+        let starts = (0..layers).step_by(share);
+        let slabs = scratch.iter_mut().zip(starts).map(|(scratch, start)| {
+            let count = share.min(layers - start);
+            Slab { grid, ask, range: start..start + count, scratch, task: task(start, count) }
+        });
+        slabs.collect()
+    }
+
+    /// What the springs and gravity accelerate the masses with. Whether a spring is too long.
+    fn forces(
+        &mut self,
+        position: &[[f64; 3]],
+        velocity: &[[f64; 3]],
+        inverse_mass: &[f64],
+        gravity: f64,
+        acceleration: &mut [[f64; 3]],
+    ) -> bool {
+        let (layer, ask, mut left) = (self.layer(), self.asks_forces(), acceleration);
+        run(self.slabs_of(ask, |start, count| {
+            let (acceleration, rest) = core::mem::take(&mut left).split_at_mut(count * layer);
+            left = rest;
+            Accelerate { position, velocity, inverse_mass, gravity, start, acceleration }
+        }))
+    }
+
+    /// Takes a step. Whether a spring was too long.
+    fn step(
+        &mut self,
+        rule: KickDrift,
+        gravity: f64,
+        floor: bool,
+        inverse_mass: &[f64],
+        mut x: &mut [[f64; 3]],
+        mut v: &mut [[f64; 3]],
+    ) -> bool {
+        let layer = self.layer();
+        // The layers beside each slab, as they are before the step.
+        let mut beside = Vec::new();
+        self.slabs_of(Ask::Lengths, |start, count| {
+            let copy = |z: Option<usize>| {
+                let rows = z.map(|z| z * layer..(z + 1) * layer).filter(|rows| rows.end <= x.len());
+                rows.map(|rows| (x[rows.clone()].to_vec(), v[rows].to_vec())).unwrap_or_default()
+            };
+            beside.push([copy(start.checked_sub(1)), copy(Some(start + count))]);
+        });
+        let (mut beside, ask) = (beside.into_iter(), self.asks_forces());
+        run(self.slabs_of(ask, |start, count| {
+            let (position, more_x) = core::mem::take(&mut x).split_at_mut(count * layer);
+            let (velocity, more_v) = core::mem::take(&mut v).split_at_mut(count * layer);
+            (x, v) = (more_x, more_v);
+            let beside = beside.next().unwrap_or_default();
+            Move { rule, gravity, floor, inverse_mass, start, count, beside, position, velocity }
+        }))
+    }
+
+    fn asks_forces(&self) -> Ask {
+        if self.damped { Ask::Damped } else { Ask::Stiff }
+    }
+
+    /// How many masses a layer has.
+    fn layer(&self) -> usize {
+        let [across, along, _] = self.lattice.size();
+        across * along
     }
 }
 
-/// The masses of a body.
-#[derive(Clone, Copy)]
-struct Masses<'a, R, const D: usize> {
-    position: &'a [[R; D]],
-    velocity: &'a [[R; D]],
-    inverse: &'a [R],
+/// The vectors of a body alone, which have three coordinates.
+fn vectors<R: Real, const D: usize>(rows: &[[R; D]]) -> Option<&[[f64; 3]]> {
+    R::alone(rows.as_flattened()).filter(|_| D == 3).map(|values| values.as_chunks().0)
 }
 
-/// The springs of a grid.
-#[derive(Clone, Copy)]
-struct Grid<'a> {
-    within: &'a [Way],
-    onward: &'a [Way],
-    masks: &'a [Vec<f64>],
-    /// How many layers there are, and of how many masses.
-    layers: usize,
-    layer: usize,
-}
-
-/// Some layers of a block, and where what accelerates them goes.
-struct Slab<'a, R, const D: usize> {
-    grid: Grid<'a>,
-    ask: Ask,
-    masses: Masses<'a, R, D>,
-    range: Range<usize>,
-    scratch: &'a mut [Layer; 2],
-    acceleration: &'a mut [[R; D]],
-}
-
-/// Computes all slabs, each on a thread. Whether any spring is too long.
-fn run<R: Real, const D: usize>(mut slabs: Vec<Slab<'_, R, D>>) -> bool {
-    match (ComputeTaskPool::try_get(), &mut slabs[..]) {
-        (Some(pool), [_, _, ..]) => {
-            let found = pool.scope(|scope| {
-                for slab in slabs {
-                    scope.spawn(async move { pulp::Arch::new().dispatch(slab) });
-                }
-            });
-            found.into_iter().any(|too_long| too_long)
-        }
-        _ => slabs.into_iter().map(|slab| pulp::Arch::new().dispatch(slab)).fold(false, |a, b| a | b),
-    }
-}
-
-impl<R: Real, const D: usize> pulp::NullaryFnOnce for Slab<'_, R, D> {
-    type Output = bool;
-
-    #[inline(always)]
-    fn call(self) -> bool {
-        match self.ask {
-            Ask::Lengths => self.sweep(Ask::Lengths),
-            Ask::Stiff => self.sweep(Ask::Stiff),
-            Ask::Damped => self.sweep(Ask::Damped),
-        }
-    }
-}
-
-impl<R: Real, const D: usize> Slab<'_, R, D> {
-    #[inline(always)]
-    fn sweep(self, ask: Ask) -> bool {
-        let Self { grid: Grid { within, onward, masks, layers, layer }, masses, range, scratch, acceleration, .. } =
-            self;
-        let mut too_long = Lanes::splat(0.0);
-        let [here, next] = scratch;
-        let (mut here, mut next) = (here, next);
-        let read = |into: &mut Layer, z: usize| {
-            let rows = z * layer..(z + 1) * layer;
-            into.set(&masses.position[rows.clone()], (ask == Ask::Damped).then(|| &masses.velocity[rows]));
-        };
-        // The springs from the layer before the first pull back at it.
-        let start = range.start.saturating_sub(1);
-        read(here, start);
-        for z in start..range.end {
-            if range.contains(&z) {
-                for way in within {
-                    join(ask, here, None, way, &masks[way.mask], &mut too_long);
-                }
-            }
-            if z + 1 < layers {
-                read(next, z + 1);
-                for way in onward {
-                    join(ask, here, Some(next), way, &masks[way.mask], &mut too_long);
-                }
-            }
-            if ask != Ask::Lengths && range.contains(&z) {
-                let (rows, from) = (z * layer..(z + 1) * layer, (z - range.start) * layer);
-                here.accelerate(&masses.inverse[rows], &mut acceleration[from..from + layer]);
-            }
-            core::mem::swap(&mut here, &mut next);
-        }
-        (0..LANES).any(|lane| too_long.lane(lane) != 0.0)
-    }
+fn vectors_mut<R: Real, const D: usize>(rows: &mut [[R; D]]) -> Option<&mut [[f64; 3]]> {
+    R::alone_mut(rows.as_flattened_mut()).filter(|_| D == 3).map(|values| values.as_chunks_mut().0)
 }
 
 impl<R: Real, const D: usize> Model<R, D> {
     /// What the springs of a block and gravity accelerate every particle with.
-    // On its own for the same reason as a strand's.
     #[inline(never)]
     pub(super) fn lattice_forces(&mut self, position: &[[R; D]], velocity: &[[R; D]], acceleration: &mut [[R; D]]) {
-        let Self { lattice: Some(rows), inverse_mass, gravity, overstretched, .. } = self else { return };
-        if rows.forces(&Masses { position, velocity, inverse: inverse_mass }, acceleration) {
+        let gravity = self.gravity.map_or(0.0, |gravity| gravity.lane(0));
+        let Self { lattice: Some(rows), inverse_mass, overstretched, .. } = self else { return };
+        let (Some(position), Some(velocity)) = (vectors(position), vectors(velocity)) else { return };
+        let (Some(inverse_mass), Some(acceleration)) = (R::alone(inverse_mass), vectors_mut(acceleration)) else {
+            return;
+        };
+        if rows.forces(position, velocity, inverse_mass, gravity, acceleration) {
             *overstretched = R::splat(1.0);
         }
-        let Some(gravity) = *gravity else { return };
-        let zero = R::splat(0.0);
-        for (row, &inverse_mass) in acceleration.iter_mut().zip(&*inverse_mass) {
-            row[1] -= zero.if_below(inverse_mass, gravity, zero);
+    }
+
+    /// Takes a whole step with a block on which nothing acts but its springs, gravity, damping by mass and the flat ground: every layer is moved as soon as its forces are
+    /// known, while it is in the cache. Gives back whether it did; if not, the step is still to be taken.
+    #[inline(never)]
+    pub(super) fn step_lattice(&mut self, rule: KickDrift, state: &mut State<R, D>) -> bool {
+        let (kind, gravity) = (self.contact.kind, self.gravity.map_or(0.0, |gravity| gravity.lane(0)));
+        if self.pull.is_some() || self.friction.is_some() || self.coulomb.is_some() || kind == ContactKind::Terrain {
+            return false;
         }
+        let Self { lattice: Some(rows), inverse_mass, overstretched, evaluations, .. } = self else { return false };
+        let (Some(inverse_mass), Some(position)) = (R::alone(inverse_mass), vectors_mut(&mut state.position)) else {
+            return false;
+        };
+        let Some(velocity) = vectors_mut(&mut state.velocity) else { return false };
+        *evaluations += R::splat(1.0);
+        if rows.step(rule, gravity, kind == ContactKind::Flat, inverse_mass, position, velocity) {
+            *overstretched = R::splat(1.0);
+        }
+        true
     }
 
     /// Notes springs of a block that are too long.
     #[inline(never)]
     pub(super) fn note_lattice(&mut self, state: &State<R, D>) {
-        let Self { lattice: Some(rows), inverse_mass, overstretched, .. } = self else { return };
-        let State { position, velocity } = state;
-        if rows.is_too_long(&Masses { position, velocity, inverse: inverse_mass }) {
+        let Self { lattice: Some(rows), overstretched, .. } = self else { return };
+        let Some(position) = vectors(&state.position) else { return };
+        if run(rows.slabs_of(Ask::Lengths, |_, _| Measure { position })) {
             *overstretched = R::splat(1.0);
         }
     }
