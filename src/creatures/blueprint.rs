@@ -193,6 +193,8 @@ impl Creature {
     /// How it wants to be drawn.
     pub fn look(&self) -> Look {
         match &self.body {
+            // What is torn has no skin.
+            Plan::Jelly(_) if self.tear.is_none() => Look::Jelly,
             Plan::Raw(_) | Plan::Jelly(_) => Look::Plain,
             Plan::Strand(strand) => Look::Strand(strand.skin),
             Plan::GardenWorm(_) => Look::GardenWorm,
