@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Deserializer, Serialize, de};
 
-use super::{GardenWorm, Look, MOST_PARTICLES, StrandPlan, numbers, parse};
+use super::{GardenWorm, JellyPlan, Look, MOST_PARTICLES, StrandPlan, numbers, parse};
 use crate::body::{Ground, MassDamping, Wave};
 
 /// A creature: what `*.creature.ron` holds.
@@ -23,6 +23,9 @@ pub struct Creature {
     /// Damping in proportion to mass, as `Rate(c)` or as the `PerStep(λ)` of damped Verlet. Left out: none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub damping: Option<MassDamping>,
+    /// The strain l/L − 1 at which its springs tear for good, above zero. Left out: they hold.
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "numbers::optional_positive")]
+    pub tear: Option<f64>,
     /// The ground that it stands on where its file is run alone; a scene has its own. Left out: none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ground: Option<Ground>,
@@ -53,6 +56,8 @@ pub enum Plan {
     GardenWorm(GardenWorm),
     /// A row of cubes with travelling waves.
     Strand(StrandPlan),
+    /// A block on a cubic grid.
+    Jelly(JellyPlan),
 }
 
 /// Lists of particles and springs.
@@ -181,13 +186,16 @@ impl Creature {
             Plan::Raw(raw) => raw.particles.len(),
             Plan::GardenWorm(_) => GardenWorm::PARTICLES,
             Plan::Strand(strand) => strand.particles(),
+            Plan::Jelly(jelly) => jelly.particles(),
         }
     }
 
     /// How it wants to be drawn.
     pub fn look(&self) -> Look {
         match &self.body {
-            Plan::Raw(_) => Look::Plain,
+            // What is torn has no skin.
+            Plan::Jelly(_) if self.tear.is_none() => Look::Jelly,
+            Plan::Raw(_) | Plan::Jelly(_) => Look::Plain,
             Plan::Strand(strand) => Look::Strand(strand.skin),
             Plan::GardenWorm(_) => Look::GardenWorm,
         }
@@ -197,7 +205,7 @@ impl Creature {
 impl From<Plan> for Creature {
     /// A creature with what its kind needs and nothing else.
     fn from(body: Plan) -> Self {
-        Self { version: 1, body, friction: None, coulomb: None, damping: None, ground: None, gravity: None }
+        Self { version: 1, body, friction: None, coulomb: None, damping: None, tear: None, ground: None, gravity: None }
     }
 }
 
@@ -216,6 +224,12 @@ impl From<RawBody> for Creature {
 impl From<StrandPlan> for Creature {
     fn from(strand: StrandPlan) -> Self {
         Plan::Strand(strand).into()
+    }
+}
+
+impl From<JellyPlan> for Creature {
+    fn from(jelly: JellyPlan) -> Self {
+        Plan::Jelly(jelly).into()
     }
 }
 

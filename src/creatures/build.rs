@@ -7,10 +7,10 @@ use bevy::{
     math::DVec3,
 };
 
-use super::{Coulomb, Creature, Friction, GardenWorm, Look, Plan, RawBody, RawParticle, StrandPlan};
+use super::{Attitude, Coulomb, Creature, Friction, GardenWorm, Look, Plan, RawBody, RawParticle, StrandPlan};
 use crate::body::{
-    BodyError, Coefficients, CoulombFriction, MassDamping, Muscle, Muscles, Particle, ParticleId, Particles,
-    SpineFriction, Spring, SpringId, Springs, Strand, TravelingWaves,
+    BodyError, Coefficients, CoulombFriction, Lattice, MassDamping, Muscle, Muscles, Particle, ParticleId, Particles,
+    SpineFriction, Spring, SpringId, Springs, Strand, Tearing, TravelingWaves,
 };
 
 /// Where a creature is put, and which way it looks.
@@ -24,7 +24,7 @@ pub struct Pose {
 
 impl Pose {
     /// The cosine and sine of the heading, exact at whole quarter turns: a worm that crawls along an axis stays on it to the last bit.
-    fn direction(self) -> (f64, f64) {
+    pub(super) fn direction(self) -> (f64, f64) {
         let degrees = self.heading % 360.0;
         let quarters = (degrees / 90.0).round();
         let (sin, cos) = libm::sincos((degrees - quarters * 90.0).to_radians());
@@ -55,12 +55,16 @@ pub struct Body {
     pub strand: Option<Strand>,
     /// The waves that travel along the lattice, if any do.
     pub waves: Option<TravelingWaves>,
+    /// The block on a grid that it is, and how it starts, if it is one.
+    pub block: Option<(Lattice, Attitude)>,
     /// Friction along its spine, if it feels any.
     pub friction: Option<SpineFriction>,
     /// Dry friction along its spine, if it feels any.
     pub coulomb: Option<CoulombFriction>,
     /// Its damping by what surrounds it, if any.
     pub damping: Option<MassDamping>,
+    /// When its springs tear, if they do.
+    pub tearing: Option<Tearing>,
     /// How it wants to be drawn.
     pub look: Look,
 }
@@ -79,6 +83,9 @@ impl EntityCommand for Body {
         if let Some(waves) = self.waves {
             entity.insert(waves);
         }
+        if let Some(block) = self.block {
+            entity.insert(block);
+        }
         if let Some(friction) = self.friction {
             entity.insert(friction);
         }
@@ -87,6 +94,9 @@ impl EntityCommand for Body {
         }
         if let Some(damping) = self.damping {
             entity.insert(damping);
+        }
+        if let Some(tearing) = self.tearing {
+            entity.insert(tearing);
         }
     }
 }
@@ -98,6 +108,12 @@ impl Creature {
     /// Where two places of the blueprint contradict each other: an end that is not a particle, a spine that names a particle twice,
     /// friction without a spine; and where a number is not allowed, which files refuse earlier.
     pub fn body(&self, pose: Pose) -> Result<Body, BodyError> {
+        let damping = match self.damping {
+            None => None,
+            Some(MassDamping::Rate(rate)) => Some(MassDamping::rate(rate)?),
+            Some(MassDamping::PerStep(part)) => Some(MassDamping::per_step(part)?),
+        };
+        let tearing = self.tear.map(Tearing::new).transpose()?;
         let (raw, kind) = match &self.body {
             Plan::Raw(raw) => {
                 (Cow::Borrowed(raw), Friction { drag: Some(0.0), brake: Some(0.0), ..Friction::default() })
@@ -110,13 +126,23 @@ impl Creature {
                 let brake = Some(StrandPlan::BRAKE);
                 (Cow::Owned(strand.raw()), Friction { drag: Some(0.0), brake, ..Friction::default() })
             }
+            Plan::Jelly(jelly) => {
+                if let Some(field) = self.friction.map(|_| "friction").or_else(|| self.coulomb.map(|_| "coulomb")) {
+                    return Err(no_spine(field));
+                }
+                return Ok(Body { damping, tearing, look: self.look(), ..jelly.body(pose)? });
+            }
         };
         let particles = particles(&raw, pose)?;
         let springs = springs(&raw, &particles)?;
         let muscles = muscles(&raw, &springs)?;
         let (strand, waves) = match &self.body {
+            Plan::Strand(_) if tearing.is_some() => {
+                let problem = "the springs of a strand cannot tear; leave it out".into();
+                return Err(BodyError::Inconsistent { path: "tear".into(), problem });
+            }
             Plan::Strand(plan) => (Some(plan.strand(&springs)?), Some(plan.waves()?)),
-            Plan::Raw(_) | Plan::GardenWorm(_) => (None, None),
+            Plan::Raw(_) | Plan::GardenWorm(_) | Plan::Jelly(_) => (None, None),
         };
         let own = self.friction.unwrap_or_default();
         let own = Friction { drag: own.drag.or(kind.drag), brake: own.brake.or(kind.brake), ..own };
@@ -134,12 +160,8 @@ impl Creature {
             SpineFriction::new(raw.spine.iter().copied().map(ParticleId), &particles)?;
         }
         let coulomb = self.coulomb.map(|coulomb| coulomb_friction(&raw, coulomb, &particles)).transpose()?;
-        let damping = match self.damping {
-            None => None,
-            Some(MassDamping::Rate(rate)) => Some(MassDamping::rate(rate)?),
-            Some(MassDamping::PerStep(part)) => Some(MassDamping::per_step(part)?),
-        };
-        Ok(Body { particles, springs, muscles, strand, waves, friction, coulomb, damping, look: self.look() })
+        let look = self.look();
+        Ok(Body { particles, springs, muscles, strand, waves, block: None, friction, coulomb, damping, tearing, look })
     }
 }
 
@@ -218,12 +240,13 @@ fn coulomb_friction(raw: &RawBody, coulomb: Coulomb, particles: &Particles) -> R
 /// The spine of a body, along which `field` works.
 fn spine<'a>(raw: &'a RawBody, field: &str) -> Result<impl Iterator<Item = ParticleId> + use<'a>, BodyError> {
     if raw.spine.is_empty() {
-        return Err(BodyError::Inconsistent {
-            path: field.into(),
-            problem:
-                "works along a spine of particles, and this body has none; give `spine: [tail, …, head]` in a raw body"
-                    .into(),
-        });
+        return Err(no_spine(field));
     }
     Ok(raw.spine.iter().copied().map(ParticleId))
+}
+
+fn no_spine(field: &str) -> BodyError {
+    let problem =
+        "works along a spine of particles, and this body has none; give `spine: [tail, …, head]` in a raw body";
+    BodyError::Inconsistent { path: field.into(), problem: problem.into() }
 }

@@ -11,6 +11,8 @@ pub enum Look {
     GardenWorm,
     /// A smooth skin over the sections of a [`Strand`](crate::body::Strand).
     Strand(Skin),
+    /// A smooth translucent skin over the outer masses of a [`Lattice`](crate::body::Lattice).
+    Jelly,
     /// Balls and rods.
     #[default]
     Plain,

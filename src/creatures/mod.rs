@@ -1,6 +1,6 @@
 //! Creatures as data: a blueprint, read from a file, becomes the components of a body. Needs no Bevy schedule.
 //!
-//! A [`Creature`] is a kind with parameters ([`GardenWorm`], [`StrandPlan`]) or raw lists of particles and springs ([`RawBody`]). [`Creature::body`]
+//! A [`Creature`] is a kind with parameters ([`GardenWorm`], [`StrandPlan`], [`JellyPlan`]) or raw lists of particles and springs ([`RawBody`]). [`Creature::body`]
 //! places it in the world and gives a [`Body`], which is put on an entity as a command:
 //!
 //! ```
@@ -17,6 +17,7 @@ mod blueprint;
 mod build;
 mod error;
 mod garden_worm;
+mod jelly;
 pub mod library;
 mod look;
 pub(crate) mod numbers;
@@ -27,6 +28,7 @@ pub use blueprint::{Coulomb, Creature, Friction, Plan, RawBody, RawMuscle, RawPa
 pub use build::{Body, Pose};
 pub use error::FileError;
 pub use garden_worm::GardenWorm;
+pub use jelly::{Attitude, JellyPlan, NeighboursPlan, Rotation, SpringPlan};
 pub use look::{Look, Skin};
 pub(crate) use parse::{CurrentVersion, options, parse, version};
 pub use strand::{StrandPlan, WavePlan};

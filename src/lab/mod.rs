@@ -4,6 +4,7 @@ mod cache;
 pub mod chart;
 mod choose;
 mod error;
+pub mod exercise;
 mod gait;
 mod gallery;
 mod hash;

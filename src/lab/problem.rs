@@ -4,8 +4,8 @@ use bevy::{ecs::prelude::*, prelude::Name};
 
 use crate::{
     body::{
-        CoulombFriction, Gravity, Ground, Guidance, MassDamping, Muscles, Particles, SpineFriction, Springs, Strand,
-        TravelingWaves,
+        CoulombFriction, Gravity, Ground, Guidance, Lattice, MassDamping, Muscles, Particles, SpineFriction, Springs,
+        Strand, Tearing, TravelingWaves,
     },
     creatures::FileError,
     mechanics::{
@@ -38,6 +38,10 @@ pub struct ProblemBody {
     pub muscles: Option<Muscles>,
     /// The lattice that it is, if it is one.
     pub strand: Option<Strand>,
+    /// The block on a grid that it is, if it is one.
+    pub lattice: Option<Lattice>,
+    /// When its springs tear, if they do.
+    pub tearing: Option<Tearing>,
     /// The waves that travel along the lattice, if any do.
     pub waves: Option<TravelingWaves>,
     /// Its friction, if it has any.
@@ -69,6 +73,8 @@ impl ProblemBody {
             springs: entity.get::<Springs>()?.clone(),
             muscles: entity.get::<Muscles>().filter(|muscles| !muscles.is_empty()).cloned(),
             strand: entity.get::<Strand>().copied(),
+            lattice: entity.get::<Lattice>().copied(),
+            tearing: entity.get::<Tearing>().cloned(),
             waves: entity.get::<TravelingWaves>().cloned(),
             friction: entity.get::<SpineFriction>().cloned(),
             coulomb: entity.get::<CoulombFriction>().cloned(),
@@ -86,6 +92,9 @@ impl ProblemBody {
             springs: &self.springs,
             muscles: self.muscles.as_ref(),
             strand: self.strand,
+            lattice: self.lattice,
+            pull: None,
+            tearing: self.tearing.as_ref(),
             waves: self.waves.as_ref(),
             guidance: Guidance::default(),
             friction: self.friction.as_ref(),
@@ -145,6 +154,7 @@ impl ProblemBody {
         // Nor does it know strands and grounds.
         hash.whole(u64::from(self.strand.is_some()));
         hash.whole(u64::from(self.ground.is_some()));
+        hash.number(self.tearing.as_ref().map_or(f64::INFINITY, Tearing::strain));
         hash.number(self.mass_damping.map_or(0.0, |damping| damping.rate_at(1.0)));
     }
 }

@@ -8,7 +8,8 @@ use crate::{
         BodyError, Gravity, Muscle, Muscles, Particle, ParticleId, Particles, Requirement, SpineFriction, Spring,
         SpringId, Springs, TravelingWave, TravelingWaves,
     },
-    physics::Clock,
+    creatures::Attitude,
+    physics::{Clock, StartState},
 };
 
 /// The component that a quantity belongs to.
@@ -24,6 +25,8 @@ pub(super) enum Group {
     Gait,
     Friction,
     Gravity,
+    /// The attitude in which a block starts.
+    Block,
 }
 
 impl Group {
@@ -37,6 +40,7 @@ impl Group {
             Self::Gait => "gait",
             Self::Friction => "friction",
             Self::Gravity => "gravity",
+            Self::Block => "block",
         }
     }
 
@@ -48,8 +52,16 @@ impl Group {
     /// Takes the group off the front of the part of a path behind the body's name.
     pub(super) fn parse(path: &str) -> (Option<Self>, &str) {
         let end = path.find(['.', '[']).unwrap_or(path.len());
-        let all =
-            [Self::Springs, Self::Particles, Self::Muscles, Self::Waves, Self::Gait, Self::Friction, Self::Gravity];
+        let all = [
+            Self::Springs,
+            Self::Particles,
+            Self::Muscles,
+            Self::Waves,
+            Self::Gait,
+            Self::Friction,
+            Self::Gravity,
+            Self::Block,
+        ];
         (all.into_iter().find(|group| group.name() == &path[..end]), &path[end..])
     }
 }
@@ -80,13 +92,14 @@ pub(super) enum Quantity {
     Brake,
     Ratchet,
     Gravity,
+    Tilt,
 }
 
 /// What is said about a quantity: group, field, what it must be, the usual range, unit and help.
 type Facts = (Group, &'static str, Requirement, (f64, f64), &'static str, &'static str);
 
 impl Quantity {
-    pub(super) const OF_BODIES: [Self; 21] = [
+    pub(super) const OF_BODIES: [Self; 22] = [
         Self::Stiffness,
         Self::Damping,
         Self::RestLength,
@@ -108,6 +121,7 @@ impl Quantity {
         Self::Brake,
         Self::Ratchet,
         Self::Gravity,
+        Self::Tilt,
     ];
 
     fn facts(self) -> Facts {
@@ -199,6 +213,14 @@ impl Quantity {
             Self::Gravity => {
                 (Group::Gravity, "gravity", NonNegative, (0.0, 1.0), "length/time²", "acceleration towards the ground")
             }
+            Self::Tilt => (
+                Group::Block,
+                "tilt",
+                Finite,
+                (-90.0, 90.0),
+                "°",
+                "how far it leans; setting it puts it back to its start",
+            ),
         }
     }
 
@@ -269,6 +291,7 @@ impl Quantity {
             Group::Friction if self == Self::Brake && !body.contains::<TravelingWaves>() => 0,
             Group::Friction => usize::from(body.contains::<SpineFriction>()),
             Group::Gravity => usize::from(body.contains::<Particles>()),
+            Group::Block => usize::from(body.contains::<Attitude>()),
         }
     }
 
@@ -297,6 +320,7 @@ impl Quantity {
                 body.get::<SpineFriction>().map(|friction| self.of_friction(friction)).into_iter().collect()
             }
             Group::Gravity => vec![body.get::<Gravity>().map_or(0.0, |gravity| gravity.acceleration())],
+            Group::Block => body.get::<Attitude>().map(Attitude::tilt).into_iter().collect(),
         }
     }
 
@@ -358,6 +382,15 @@ impl Quantity {
                 }
                 Group::Gravity => {
                     body.insert(Gravity::new(value)?);
+                }
+                Group::Block => {
+                    let Some(mut attitude) = body.get::<Attitude>().copied() else { continue };
+                    attitude.set_tilt(value)?;
+                    body.insert(attitude);
+                    let Some(mut particles) = body.get_mut::<Particles>() else { continue };
+                    attitude.place(&mut particles)?;
+                    let start = StartState(particles.clone());
+                    body.insert(start);
                 }
             }
         }
