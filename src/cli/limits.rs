@@ -50,7 +50,7 @@ fn table(all: &[Limits]) -> Vec<Vec<String>> {
         vec![
             row.scene.clone(),
             row.body.clone(),
-            row.method.name().into(),
+            row.method.into(),
             number(row.predicted),
             number(Some(row.bound)),
             number(row.linearised),

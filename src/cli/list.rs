@@ -7,8 +7,8 @@ use clap::Args;
 use super::{CliError, Headless, Outcome};
 use crate::{
     creatures::{
-        JellyPlan, Plan,
-        library::{self, CREATURE, SCENE, Source},
+        JellyPlan, Plan, RoadForm,
+        library::{self, CREATURE, ROAD, SCENE, Source},
     },
     mechanics::integrators::Method,
     scenes::{self, parameters},
@@ -63,6 +63,24 @@ fn names() -> Vec<Vec<String>> {
                 Plan::GardenWorm(_) => "garden worm".into(),
                 Plan::Strand(strand) => format!("strand of {} segments", strand.segments),
                 Plan::Jelly(JellyPlan { size: (x, y, z), .. }) => format!("jelly of {x} × {y} × {z}"),
+                Plan::Inchworm(_) => "inchworm: a muscle with two legs, for a road".into(),
+                Plan::Roller(_) => "roller: two wheels and four beams, for a road".into(),
+                Plan::Composed(composed) => {
+                    format!("{} particles, {} rules, for a road", composed.particles(), composed.rules.len())
+                }
+            },
+            Err(error) => error.to_string(),
+        };
+        row(name, kind, &source)
+    }));
+    rows.push(vec!["Roads (road: \"NAME\" in a scene file):".into()]);
+    rows.extend(library::list(ROAD).into_iter().map(|(name, source)| {
+        let kind = match library::read_road(&source) {
+            Ok(road) => match road.form {
+                RoadForm::Strip(_) => "a straight strip".into(),
+                RoadForm::Rough(_) => "rings of particles along two curves".into(),
+                RoadForm::Helix(_) => "a ramp that winds upwards".into(),
+                RoadForm::Course(course) => format!("along {} points", course.points.len()),
             },
             Err(error) => error.to_string(),
         };

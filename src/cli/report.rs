@@ -8,11 +8,8 @@ use serde::Serialize;
 
 use super::Headless;
 use crate::{
-    body::{Lattice, Particles, Tearing},
-    mechanics::{
-        integrators::Method,
-        metrics::{BlockShape, Gait, GaitMetrics, SAMPLES_A_CYCLE},
-    },
+    body::{Bonds, Lattice, Particles, Springs, Tearing},
+    mechanics::metrics::{BlockShape, Gait, GaitMetrics, SAMPLES_A_CYCLE},
     physics::{Frozen, body_parts},
 };
 
@@ -63,6 +60,7 @@ pub(super) struct Report {
 struct BodyReport {
     name: String,
     particles: usize,
+    /// Springs, or bonds.
     springs: usize,
     start: [f64; 3],
     center: [f64; 3],
@@ -81,10 +79,11 @@ struct BodyReport {
 
 impl Report {
     /// Notes where the bodies are at the start.
-    pub(super) fn start(scene: String, method: Method, run: &Headless) -> Self {
+    pub(super) fn start(scene: String, method: &'static str, run: &Headless) -> Self {
         let bodies = run.bodies().map(|(name, body, particles)| {
             let start = particles.center().to_array();
-            let springs = body.get::<crate::body::Springs>().map_or(0, |springs| springs.len());
+            let bonds = body.get::<Bonds>().map_or(0, |bonds| bonds.relation().len());
+            let springs = body.get::<Springs>().map_or(bonds, Springs::len);
             BodyReport {
                 name: name.into(),
                 particles: particles.len(),
@@ -101,7 +100,7 @@ impl Report {
         let gaits = run.bodies().map(|(_, body, _)| Gait::new(&body_parts(body)?));
         Self {
             scene,
-            method: method.name(),
+            method,
             dt: run.clock().dt(),
             time: 0.0,
             steps: 0,

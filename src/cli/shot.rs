@@ -16,9 +16,9 @@ use crate::{
 pub(super) struct ShotArguments {
     /// A scene or creature by name or file
     scene: String,
-    /// When, in simulated time; a whole number of dt
-    #[arg(long, value_name = "T", default_value = "0", value_parser = values::non_negative)]
-    at: f64,
+    /// When, in simulated time; a whole number of dt [default: the moment at which the scene opens, or 0]
+    #[arg(long, value_name = "T", value_parser = values::non_negative)]
+    at: Option<f64>,
     /// Width and height in pixels
     #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = size)]
     size: (u32, u32),
@@ -33,7 +33,11 @@ pub(super) struct ShotArguments {
 pub(super) fn shot(arguments: &ShotArguments) -> Result<Outcome, CliError> {
     check_out(&arguments.out)?;
     let scene = scenes::load(&arguments.scene)?;
-    let steps = values::steps_of_flag("--at", arguments.at, scene.file.clock.dt()).map_err(CliError::Usage)?;
+    let clock = scene.file.clock;
+    let steps = match arguments.at {
+        Some(at) => values::steps_of_flag("--at", at, clock.dt()).map_err(CliError::Usage)?,
+        None => clock.opening_steps(),
+    };
     draw(scene, steps, arguments)
 }
 
@@ -45,7 +49,9 @@ fn draw(scene: scenes::LoadedScene, steps: u64, arguments: &ShotArguments) -> Re
     // The first frame opens the scene.
     shot.update();
     let world = shot.world_mut();
-    world.resource_mut::<Clock>().set_steps_per_tick(steps);
+    let mut clock = world.resource_mut::<Clock>();
+    clock.leap(0);
+    clock.set_steps_per_tick(steps);
     world.run_schedule(Ticks);
     let frozen: Vec<_> = world.resource_mut::<Messages<BodyFrozen>>().drain().collect();
     shot.picture()?.save(&arguments.out)?;

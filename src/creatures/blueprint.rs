@@ -1,8 +1,12 @@
 //! A creature file as data.
 
+use std::borrow::Cow;
+
 use serde::{Deserialize, Deserializer, Serialize, de};
 
-use super::{GardenWorm, JellyPlan, Look, MOST_PARTICLES, StrandPlan, numbers, parse};
+use super::{
+    Composed, GardenWorm, Inchworm, JellyPlan, Look, MOST_PARTICLES, Roller, SixSkin, StrandPlan, numbers, parse,
+};
 use crate::body::{Ground, MassDamping, Wave};
 
 /// A creature: what `*.creature.ron` holds.
@@ -29,6 +33,10 @@ pub struct Creature {
     /// The ground that it stands on where its file is run alone; a scene has its own. Left out: none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ground: Option<Ground>,
+    /// The name or file of the road that it moves on where its file is run alone, for creatures of the six-matrix particle system; a scene has its own. Left out:
+    /// none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub road: Option<String>,
     /// Gravity where its file is run alone; a scene has its own. Left out: none.
     #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "numbers::optional_non_negative")]
     pub gravity: Option<f64>,
@@ -58,6 +66,24 @@ pub enum Plan {
     Strand(StrandPlan),
     /// A block on a cubic grid.
     Jelly(JellyPlan),
+    /// Sixty particles that are one muscle, and two legs.
+    Inchworm(Inchworm),
+    /// An axle with two wheels and four beams.
+    Roller(Roller),
+    /// Groups, relations and rules of the six-matrix particle system.
+    Composed(Composed),
+}
+
+impl Plan {
+    /// What it is made of as a creature of the six-matrix particle system; nothing where it has springs.
+    pub fn composed(&self) -> Option<Cow<'_, Composed>> {
+        match self {
+            Self::Inchworm(inchworm) => Some(Cow::Owned(inchworm.composed())),
+            Self::Roller(roller) => Some(Cow::Owned(roller.composed())),
+            Self::Composed(composed) => Some(Cow::Borrowed(composed)),
+            Self::Raw(_) | Self::GardenWorm(_) | Self::Strand(_) | Self::Jelly(_) => None,
+        }
+    }
 }
 
 /// Lists of particles and springs.
@@ -187,6 +213,9 @@ impl Creature {
             Plan::GardenWorm(_) => GardenWorm::PARTICLES,
             Plan::Strand(strand) => strand.particles(),
             Plan::Jelly(jelly) => jelly.particles(),
+            Plan::Inchworm(_) => Inchworm::PARTICLES,
+            Plan::Roller(_) => Roller::PARTICLES,
+            Plan::Composed(composed) => composed.particles(),
         }
     }
 
@@ -198,6 +227,9 @@ impl Creature {
             Plan::Raw(_) | Plan::Jelly(_) => Look::Plain,
             Plan::Strand(strand) => Look::Strand(strand.skin),
             Plan::GardenWorm(_) => Look::GardenWorm,
+            Plan::Inchworm(_) => Look::SixMatrix(SixSkin::Organic),
+            Plan::Roller(_) => Look::SixMatrix(SixSkin::Mechanical),
+            Plan::Composed(composed) => Look::SixMatrix(composed.skin),
         }
     }
 }
@@ -205,7 +237,17 @@ impl Creature {
 impl From<Plan> for Creature {
     /// A creature with what its kind needs and nothing else.
     fn from(body: Plan) -> Self {
-        Self { version: 1, body, friction: None, coulomb: None, damping: None, tear: None, ground: None, gravity: None }
+        Self {
+            version: 1,
+            body,
+            friction: None,
+            coulomb: None,
+            damping: None,
+            tear: None,
+            ground: None,
+            road: None,
+            gravity: None,
+        }
     }
 }
 
@@ -218,6 +260,24 @@ impl From<GardenWorm> for Creature {
 impl From<RawBody> for Creature {
     fn from(raw: RawBody) -> Self {
         Plan::Raw(raw).into()
+    }
+}
+
+impl From<Inchworm> for Creature {
+    fn from(inchworm: Inchworm) -> Self {
+        Plan::Inchworm(inchworm).into()
+    }
+}
+
+impl From<Roller> for Creature {
+    fn from(roller: Roller) -> Self {
+        Plan::Roller(roller).into()
+    }
+}
+
+impl From<Composed> for Creature {
+    fn from(composed: Composed) -> Self {
+        Plan::Composed(composed).into()
     }
 }
 

@@ -7,7 +7,9 @@ use bevy::{
     math::DVec3,
 };
 
-use super::{Attitude, Coulomb, Creature, Friction, GardenWorm, Look, Plan, RawBody, RawParticle, StrandPlan};
+use super::{
+    Attitude, Composed, Coulomb, Creature, Friction, GardenWorm, Look, Plan, RawBody, RawParticle, SixBody, StrandPlan,
+};
 use crate::body::{
     BodyError, Coefficients, CoulombFriction, Lattice, MassDamping, Muscle, Muscles, Particle, ParticleId, Particles,
     SpineFriction, Spring, SpringId, Springs, Strand, Tearing, TravelingWaves,
@@ -37,6 +39,12 @@ impl Pose {
         // Adding zero makes a plain 0 of −0, which would travel into velocities and from there into hashes.
         (cos + 0.0, sin + 0.0)
     }
+
+    /// Turns about the vertical.
+    pub(super) fn turn(self, (x, y, z): (f64, f64, f64)) -> DVec3 {
+        let (cos, sin) = self.direction();
+        DVec3::new(x * cos - z * sin, y, x * sin + z * cos)
+    }
 }
 
 /// The components of a body, ready to be put on an entity.
@@ -47,8 +55,10 @@ impl Pose {
 pub struct Body {
     /// Its masses.
     pub particles: Particles,
-    /// Its springs.
+    /// Its springs; none where it has `six`.
     pub springs: Springs,
+    /// What moves it in place of springs, if it belongs to the six-matrix particle system.
+    pub six: Option<SixBody>,
     /// What drives its springs, if anything does.
     pub muscles: Option<Muscles>,
     /// The lattice that it is, if it is one.
@@ -73,7 +83,12 @@ impl EntityCommand for Body {
     type Out = ();
 
     fn apply(self, mut entity: EntityWorldMut) {
-        entity.insert((self.particles, self.springs, self.look));
+        entity.insert((self.particles, self.look));
+        if let Some(SixBody { columns, bonds, collisions, rules }) = self.six {
+            entity.insert((columns, bonds, collisions, rules));
+            return;
+        }
+        entity.insert(self.springs);
         if let Some(muscles) = self.muscles {
             entity.insert(muscles);
         }
@@ -108,6 +123,9 @@ impl Creature {
     /// Where two places of the blueprint contradict each other: an end that is not a particle, a spine that names a particle twice,
     /// friction without a spine; and where a number is not allowed, which files refuse earlier.
     pub fn body(&self, pose: Pose) -> Result<Body, BodyError> {
+        if let Some(composed) = self.body.composed() {
+            return self.six_body(&composed, pose);
+        }
         let damping = match self.damping {
             None => None,
             Some(MassDamping::Rate(rate)) => Some(MassDamping::rate(rate)?),
@@ -132,6 +150,8 @@ impl Creature {
                 }
                 return Ok(Body { damping, tearing, look: self.look(), ..jelly.body(pose)? });
             }
+            // Built above.
+            Plan::Inchworm(_) | Plan::Roller(_) | Plan::Composed(_) => Default::default(),
         };
         let particles = particles(&raw, pose)?;
         let springs = springs(&raw, &particles)?;
@@ -142,7 +162,7 @@ impl Creature {
                 return Err(BodyError::Inconsistent { path: "tear".into(), problem });
             }
             Plan::Strand(plan) => (Some(plan.strand(&springs)?), Some(plan.waves()?)),
-            Plan::Raw(_) | Plan::GardenWorm(_) | Plan::Jelly(_) => (None, None),
+            _ => (None, None),
         };
         let own = self.friction.unwrap_or_default();
         let own = Friction { drag: own.drag.or(kind.drag), brake: own.brake.or(kind.brake), ..own };
@@ -161,16 +181,60 @@ impl Creature {
         }
         let coulomb = self.coulomb.map(|coulomb| coulomb_friction(&raw, coulomb, &particles)).transpose()?;
         let look = self.look();
-        Ok(Body { particles, springs, muscles, strand, waves, block: None, friction, coulomb, damping, tearing, look })
+        Ok(Body {
+            particles,
+            springs,
+            muscles,
+            strand,
+            waves,
+            block: None,
+            six: None,
+            friction,
+            coulomb,
+            damping,
+            tearing,
+            look,
+        })
+    }
+}
+
+impl Creature {
+    /// A body of the six-matrix particle system, which has no use for what springs have.
+    fn six_body(&self, composed: &Composed, pose: Pose) -> Result<Body, BodyError> {
+        let unused = [
+            ("friction", self.friction.is_some()),
+            ("coulomb", self.coulomb.is_some()),
+            ("damping", self.damping.is_some()),
+            ("tear", self.tear.is_some()),
+        ];
+        if let Some((field, _)) = unused.iter().find(|(_, given)| *given) {
+            let problem =
+                "is for creatures with springs; this one has the damping of its groups and the numbers of its rules";
+            return Err(BodyError::Inconsistent { path: (*field).into(), problem: problem.into() });
+        }
+        let places: Vec<_> = composed.rest().iter().map(|x| pose.turn((*x).into()) + pose.at).collect();
+        let particles = Particles::new(places.iter().map(|&x| Particle::at(x)))?;
+        Ok(Body {
+            six: Some(composed.build(&places)?),
+            springs: Springs::new([], &particles)?,
+            particles,
+            muscles: None,
+            strand: None,
+            waves: None,
+            friction: None,
+            coulomb: None,
+            block: None,
+            damping: None,
+            tearing: None,
+            look: self.look(),
+        })
     }
 }
 
 fn particles(raw: &RawBody, pose: Pose) -> Result<Particles, BodyError> {
-    let (cos, sin) = pose.direction();
-    let turn = |(x, y, z): (f64, f64, f64)| DVec3::new(x * cos - z * sin, y, x * sin + z * cos);
     Particles::new(raw.particles.iter().map(|&RawParticle { position, velocity, mass, pinned }| Particle {
-        position: turn(position) + pose.at,
-        velocity: turn(velocity),
+        position: pose.turn(position) + pose.at,
+        velocity: pose.turn(velocity),
         mass,
         pinned,
     }))

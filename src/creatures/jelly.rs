@@ -161,6 +161,7 @@ impl JellyPlan {
             muscles: None,
             strand: None,
             waves: None,
+            six: None,
             block: Some((lattice, attitude)),
             friction: None,
             coulomb: None,

@@ -9,7 +9,7 @@ use std::{
 
 use rust_embed::RustEmbed;
 
-use super::{Creature, FileError, parse};
+use super::{Creature, FileError, RoadFile, parse};
 
 /// The largest file that is read, in bytes.
 pub const LARGEST_FILE: u64 = 64 * 1024 * 1024;
@@ -48,6 +48,10 @@ pub const SCENE: FileKind = FileKind {
     opening: "Scene(version: 1, title: …, creatures: …)",
 };
 
+/// Road files.
+pub const ROAD: FileKind =
+    FileKind { what: "road", folder: "roads", suffix: ".road.ron", opening: "Road(version: 1, form: …)" };
+
 /// Where a file is.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Source {
@@ -74,7 +78,8 @@ impl Source {
             Self::Shipped(path) => Path::new(path),
         };
         let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
-        let stem = [SCENE.suffix, CREATURE.suffix, ".ron"].iter().find_map(|suffix| name.strip_suffix(suffix));
+        let stem =
+            [SCENE.suffix, CREATURE.suffix, ROAD.suffix, ".ron"].iter().find_map(|suffix| name.strip_suffix(suffix));
         stem.filter(|stem| !stem.is_empty()).unwrap_or(&name).to_owned()
     }
 
@@ -166,6 +171,14 @@ pub fn read(kind: FileKind, source: &Source) -> Result<String, FileError> {
 /// As [`read`], and where the text is no creature. Places that contradict each other are found when its body is built.
 pub fn read_creature(source: &Source) -> Result<Creature, FileError> {
     parse(&read(CREATURE, source)?, &source.to_string())
+}
+
+/// Reads a road file.
+///
+/// # Errors
+/// As [`read`], and where the text is no road. What allows no road is found when it is built.
+pub fn read_road(source: &Source) -> Result<RoadFile, FileError> {
+    parse(&read(ROAD, source)?, &source.to_string())
 }
 
 /// Which of `names` look like `name`.

@@ -3,6 +3,8 @@
 use bevy::{ecs::prelude::*, prelude::ReflectComponent, reflect::Reflect};
 use serde::{Deserialize, Serialize};
 
+use super::SixSkin;
+
 /// How a body wants to be drawn. The physics does not read it.
 #[derive(Clone, Component, Copy, Debug, Default, PartialEq, Eq, Reflect)]
 #[reflect(Component)]
@@ -13,6 +15,8 @@ pub enum Look {
     Strand(Skin),
     /// A smooth translucent skin over the outer masses of a [`Lattice`](crate::body::Lattice).
     Jelly,
+    /// A creature of the six-matrix particle system.
+    SixMatrix(SixSkin),
     /// Balls and rods.
     #[default]
     Plain,

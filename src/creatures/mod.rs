@@ -1,6 +1,7 @@
 //! Creatures as data: a blueprint, read from a file, becomes the components of a body. Needs no Bevy schedule.
 //!
-//! A [`Creature`] is a kind with parameters ([`GardenWorm`], [`StrandPlan`], [`JellyPlan`]) or raw lists of particles and springs ([`RawBody`]). [`Creature::body`]
+//! A [`Creature`] is a kind with parameters ([`GardenWorm`], [`StrandPlan`], [`JellyPlan`]) or raw lists of particles and springs ([`RawBody`]); or it belongs to the
+//! six-matrix particle system as a kind ([`Inchworm`], [`Roller`]) or written out ([`Composed`]), and then moves on a road ([`RoadFile`]). [`Creature::body`]
 //! places it in the world and gives a [`Body`], which is put on an entity as a command:
 //!
 //! ```
@@ -22,6 +23,7 @@ pub mod library;
 mod look;
 pub(crate) mod numbers;
 mod parse;
+mod six;
 mod strand;
 
 pub use blueprint::{Coulomb, Creature, Friction, Plan, RawBody, RawMuscle, RawParticle, RawSpring};
@@ -31,6 +33,11 @@ pub use garden_worm::GardenWorm;
 pub use jelly::{Attitude, JellyPlan, NeighboursPlan, Rotation, SpringPlan};
 pub use look::{Look, Skin};
 pub(crate) use parse::{CurrentVersion, options, parse, version};
+pub use six::{
+    Composed, Course, DrivePlan, GroupPlan, Height, Helix, Inchworm, LegPlan, MOST_COMPOSED, MusclePlan, PairPlan,
+    ParticlePlace, RangePlace, RoadFile, RoadForm, Roller, Rough, RulePlan, Shape, SixBody, SixSkin, Station, Strip,
+    WeightPlan, WheelPlan,
+};
 pub use strand::{StrandPlan, WavePlan};
 
 /// The most particles that the creatures of a scene may have together. Files that ask for more are refused before memory is taken.

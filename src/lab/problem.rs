@@ -187,9 +187,13 @@ impl Problem {
     /// The problem of a scene as its file has it, with the parameters that the file sets.
     ///
     /// # Errors
-    /// If a body cannot be built, which loading the scene has found out before.
+    /// If a body cannot be built, which loading the scene has found out before, or has no springs.
     pub fn of(scene: &LoadedScene) -> Result<Self, LabError> {
         let (mut bodies, clock) = ProblemBody::all(scene)?;
+        if bodies.len() < scene.file.creatures.len() {
+            let what = "the six-matrix particle system, which knows one step and no method".into();
+            return Err(LabError::Unsupported { scene: scene.source.stem(), what });
+        }
         let dt = clock.dt();
         for body in &mut bodies {
             body.mass_damping = body.mass_damping.map(|damping| MassDamping::Rate(damping.rate_at(dt)));

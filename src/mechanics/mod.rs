@@ -4,6 +4,8 @@
 //! [`Real`], in the layout that the arithmetic wants; the methods in [`integrators`] are written once for
 //! all of them. Every operation on a lane is the operation on an `f64`, so a body's bits do not depend on what is stepped
 //! beside it.
+//!
+//! [`six_matrix`] is the second model of motion, whose forces are per step; it shares none of this.
 
 mod advance;
 mod contact;
@@ -19,6 +21,7 @@ mod model;
 mod pull;
 mod quad;
 mod real;
+pub mod six_matrix;
 mod stability;
 mod strand;
 mod tearing;

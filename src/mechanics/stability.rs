@@ -126,6 +126,26 @@ struct Line {
     across: f64,
 }
 
+/// A bond of unit masses, as its largest eigenvalue is asked for.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct BondLine {
+    pub(super) ends: [usize; 2],
+    /// Of length 1, or zero for a bond without length, which then resists in all directions.
+    pub(super) direction: DVec3,
+    /// Stiffness along it.
+    pub(super) stiffness: f64,
+}
+
+/// The largest eigenvalue of bonds between so many unit masses, from above.
+pub(super) fn largest_bond_eigenvalue(bonds: impl Iterator<Item = BondLine>, masses: usize) -> f64 {
+    let line = |BondLine { ends, direction, stiffness }| {
+        let across = if direction == DVec3::ZERO { stiffness } else { 0.0 };
+        Line { ends, direction, stiffness, damping: 0.0, across }
+    };
+    let lines: Vec<_> = bonds.map(line).collect();
+    largest_eigenvalue(&lines, &vec![1.0; masses], |line| (line.stiffness, line.across))
+}
+
 fn lines(body: &BodyParts<'_>, time: f64) -> Vec<Line> {
     let line = |(spring, rest): (Spring, f64)| {
         let difference = difference(body.particles, spring.ends);

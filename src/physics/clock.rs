@@ -30,13 +30,15 @@ pub struct Clock {
     carry: f64,
     /// How many steps the last tick took that took any.
     last_steps: u64,
+    /// How many steps the next tick takes instead of those that are due.
+    leap: u64,
 }
 
 /// The garden worm's document steps by half a millisecond.
 impl Default for Clock {
     fn default() -> Self {
         let timeline = Timeline { dt: 0.0005, base_step: 0, base_time: 0.0 };
-        Self { timeline, pace: Pace::TimeScale(1.0), step: 0, carry: 0.0, last_steps: 0 }
+        Self { timeline, pace: Pace::TimeScale(1.0), step: 0, carry: 0.0, last_steps: 0, leap: 0 }
     }
 }
 
@@ -101,6 +103,11 @@ impl Clock {
         self.pace = Pace::Steps(steps);
     }
 
+    /// Has the next tick take exactly this many steps, whatever is due; 0 takes it back.
+    pub fn leap(&mut self, steps: u64) {
+        self.leap = steps;
+    }
+
     /// How many steps have been taken since the start.
     pub fn step(&self) -> u64 {
         self.step
@@ -119,12 +126,13 @@ impl Clock {
     /// Back to time 0, with the same dt and pace.
     pub fn rewind(&mut self) {
         self.timeline = Timeline { base_step: 0, base_time: 0.0, ..self.timeline };
-        (self.step, self.carry, self.last_steps) = (0, 0.0, 0);
+        (self.step, self.carry, self.last_steps, self.leap) = (0, 0.0, 0, 0);
     }
 
     /// The whole steps of a tick that lasts `seconds` of real time, and what is carried on to the next.
     fn due(&self, seconds: f64) -> (u64, f64) {
         match self.pace {
+            _ if self.leap > 0 => (self.leap, self.carry),
             Pace::Steps(steps) => (steps, 0.0),
             Pace::TimeScale(scale) => {
                 let due = self.carry + seconds * scale / self.timeline.dt;
@@ -145,7 +153,7 @@ impl Clock {
     /// Takes the whole steps of a tick that lasts `seconds` of real time, and says how many they are.
     pub(super) fn take_steps(&mut self, seconds: f64) -> u64 {
         let (steps, carry) = self.due(seconds);
-        self.carry = carry;
+        (self.carry, self.leap) = (carry, 0);
         steps
     }
 

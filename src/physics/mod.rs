@@ -12,15 +12,17 @@
 //!
 //! A body is one entity with [`Particles`], [`Springs`](crate::body::Springs), a [`Method`], and whichever of
 //! [`Muscles`](crate::body::Muscles), [`SpineFriction`](crate::body::SpineFriction), [`Gravity`](crate::body::Gravity) and [`Ground`](crate::body::Ground) it
-//! needs. Physics adds the rest. Pausing is Bevy's `Time<Virtual>::pause`; a paused app takes exactly one tick after
+//! needs. A body of the six-matrix particle system has [`Rules`](crate::body::Rules) and what they work on in place of springs and a method. Physics adds the rest. Pausing is Bevy's `Time<Virtual>::pause`; a paused app takes exactly one tick after
 //! `Time<Fixed>::accumulate_overstep(timestep)`.
 
 mod clock;
 mod plan;
 mod restart;
+mod six;
 mod steer;
 mod step;
 mod sync;
+mod trail;
 mod watch;
 
 use bevy::{
@@ -30,16 +32,18 @@ use bevy::{
 };
 
 use crate::{
-    body::{Particles, TravelingWaves},
+    body::{Particles, Rules, Springs, TravelingWaves},
     mechanics::integrators::Method,
 };
 
 pub use clock::{Clock, Pace};
 pub use plan::{Plan, body_parts};
 pub use restart::{Restart, StartState};
+pub use six::six_parts;
 pub use steer::Steer;
 pub use step::{Cost, Work};
 pub use sync::{FollowParticle, Previous, Shown, ShownLap};
+pub use trail::Trail;
 pub use watch::{BodyFrozen, Frozen, Verdict};
 
 /// The sets in which physics runs, in this order.
@@ -91,13 +95,14 @@ impl PhysicsPlugin {
 impl Plugin for PhysicsPlugin {
     fn build(&self, app: &mut App) {
         app.init_resource::<Clock>().init_resource::<Cost>().add_message::<BodyFrozen>().add_message::<Restart>();
-        app.register_required_components::<Particles, Method>()
+        app.register_required_components::<Springs, Method>()
             .register_required_components::<Particles, Plan>()
             .register_required_components::<Particles, Verdict>()
             .register_required_components::<Particles, Work>()
             .register_required_components::<Particles, Previous>()
             .register_required_components::<Particles, Shown>()
             .register_required_components::<TravelingWaves, Steer>()
+            .register_required_components::<Rules, Trail>()
             .add_observer(restart::remember_start);
 
         app.configure_sets(
@@ -107,13 +112,13 @@ impl Plugin for PhysicsPlugin {
         app.add_systems(
             self.schedule,
             (
-                plan::plan.in_set(PhysicsSystems::Actuate),
+                (plan::plan, six::plan).in_set(PhysicsSystems::Actuate),
                 (sync::remember, step::step).chain().in_set(PhysicsSystems::Step),
-                (watch::watch, plan::watch_limit).chain().in_set(PhysicsSystems::Watch),
+                (watch::watch, plan::watch_limit, six::watch_limit).chain().in_set(PhysicsSystems::Watch),
             ),
         );
         // Also while paused, when no tick runs.
-        app.add_systems(PreUpdate, (restart::restart, plan::plan).chain());
+        app.add_systems(PreUpdate, (restart::restart, plan::plan, six::plan).chain());
 
         // Nothing else runs in it, and handing three systems from thread to thread costs more than they do.
         app.edit_schedule(Ticks, |schedule| {

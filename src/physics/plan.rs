@@ -11,8 +11,8 @@ use bevy::{
 
 use crate::{
     body::{
-        CoulombFriction, Gravity, Ground, Lattice, MassDamping, Muscles, Particles, Pull, SpineFriction, Springs,
-        Strand, Tearing, TravelingWaves,
+        CoulombFriction, Gravity, Ground, Lattice, MassDamping, Muscles, Particles, Pull, Rules, SpineFriction,
+        Springs, Strand, Tearing, TravelingWaves,
     },
     mechanics::{
         BodyParts,
@@ -97,11 +97,11 @@ pub fn body_parts(entity: EntityRef<'_>) -> Option<BodyParts<'_>> {
 pub struct Plan {
     /// Equal for bodies that may be stepped side by side; different ones are equal only by a rare accident.
     pub(super) topology: u64,
-    stability_limit: f64,
+    pub(super) stability_limit: f64,
     /// The step after which the limit was worked out.
     limited_at: u64,
     /// The dt for which a warning was given last.
-    warned: Option<f64>,
+    pub(super) warned: Option<f64>,
     /// Why the body cannot be stepped at all.
     pub(super) misfit: Option<String>,
 }
@@ -154,7 +154,7 @@ type Changes = Or<(
 type Planned = (&'static Particles, Parts, Option<&'static Tearing>, Option<&'static Steer>, &'static mut Plan);
 
 /// Plans every body that was changed.
-pub(super) fn plan(clock: Res<Clock>, mut bodies: Query<Planned, Changes>) {
+pub(super) fn plan(clock: Res<Clock>, mut bodies: Query<Planned, (Changes, Without<Rules>)>) {
     for (particles, parts, tearing, steer, mut plan) in &mut bodies {
         let body = parts.body(particles, tearing, steer);
         plan.misfit = misfit(&body);
@@ -177,7 +177,7 @@ type Watched = (
 );
 
 /// Works out the limit again of every body whose pose may have changed it, and warns where dt is above a limit.
-pub(super) fn watch_limit(clock: Res<Clock>, mut bodies: Query<Watched, Without<Frozen>>) {
+pub(super) fn watch_limit(clock: Res<Clock>, mut bodies: Query<Watched, (Without<Frozen>, Without<Rules>)>) {
     for (name, particles, parts, tearing, steer, mut plan) in &mut bodies {
         let body = parts.body(particles, tearing, steer);
         // A restart counts from 0 again.

@@ -2,9 +2,9 @@
 
 use bevy::ecs::prelude::*;
 
-use crate::body::{Muscles, Particles, Tearing, TravelingWaves};
+use crate::body::{Columns, Muscles, Particles, Tearing, TravelingWaves};
 
-use super::{Clock, Cost, Frozen, Previous, Steer, Work};
+use super::{Clock, Cost, Frozen, Previous, Steer, Trail, Work};
 
 /// Asks for every body to be put back to where it was spawned and for time 0. Frozen bodies go on; parameters stay as they are.
 #[derive(Clone, Copy, Debug, Default, Message)]
@@ -35,6 +35,8 @@ type Bodies<'w, 's> = Query<
         Option<&'static mut TravelingWaves>,
         Option<&'static mut Tearing>,
         Option<&'static mut Steer>,
+        Option<&'static mut Columns>,
+        Option<&'static mut Trail>,
     ),
 >;
 
@@ -51,7 +53,9 @@ pub(super) fn restart(
     }
     clock.rewind();
     *cost = Cost::default();
-    for (body, mut particles, mut previous, start, mut work, muscles, waves, tearing, steer) in &mut bodies {
+    for (body, mut particles, mut previous, start, mut work, muscles, waves, tearing, steer, columns, trail) in
+        &mut bodies
+    {
         *work = Work::default();
         particles.set_state(&start.0);
         previous.position.clone_from(start.0.position_columns());
@@ -66,6 +70,12 @@ pub(super) fn restart(
         }
         if let Some(mut steer) = steer {
             *steer = Steer::default();
+        }
+        if let Some(mut columns) = columns {
+            columns.rewind();
+        }
+        if let Some(mut trail) = trail {
+            *trail = Trail::default();
         }
         commands.entity(body).remove::<Frozen>();
     }

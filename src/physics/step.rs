@@ -8,13 +8,14 @@ use core::ops::Range;
 use std::time::Instant;
 
 use crate::{
-    body::{ParticleId, Particles, Tearing},
+    body::{ParticleId, Particles, Rules, Tearing},
     mechanics::{Advance, BodyParts, Lanes, Model, Real, State, Timeline},
 };
 
 use super::{
     Clock, Frozen, Plan, Steer,
     plan::{Parts, PartsItem},
+    six,
     watch::{Failure, Verdict},
 };
 
@@ -98,7 +99,8 @@ pub(super) fn step(
     time: Res<Time>,
     mut clock: ResMut<Clock>,
     mut cost: ResMut<Cost>,
-    mut bodies: Query<Bodies, Without<Frozen>>,
+    mut bodies: Query<Bodies, (Without<Frozen>, Without<Rules>)>,
+    mut six: Query<six::Bodies, Without<Frozen>>,
 ) {
     let start = Instant::now();
     let steps = clock.take_steps(time.delta_secs_f64());
@@ -136,6 +138,7 @@ pub(super) fn step(
         cost.force_evaluations += item.evaluations;
         cost.spring_updates += item.evaluations * item.body().springs.len() as u64;
     }
+    six::step(&mut six, &mut cost, timeline, &range);
     clock.advance(steps);
     cost.seconds = start.elapsed().as_secs_f64();
 }

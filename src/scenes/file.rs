@@ -32,6 +32,9 @@ pub struct SceneFile {
     /// What its creatures stand on. Left out: nothing.
     #[serde(default)]
     pub ground: Option<Ground>,
+    /// The name or file of the road that creatures of the six-matrix particle system move on. Left out: none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub road: Option<String>,
     /// Its creatures.
     pub creatures: Vec<Placement>,
     /// What stands around. Left out: nothing.
@@ -107,9 +110,28 @@ pub struct Placement {
     /// Which way it looks, in degrees about the vertical; positive turns from +x towards +z. Left out: 0, along +x.
     #[serde(default, deserialize_with = "numbers::finite")]
     pub heading: f64,
+    /// Where on its road it is put, for creatures of the six-matrix particle system: just touching it; `heading` then turns it from the way that the road goes,
+    /// and `at` moves it from there. Left out: it stands where its own numbers put it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub on_road: Option<OnRoad>,
+    /// Its own road. Left out: that of the scene.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub road: Option<String>,
     /// Its own method. Left out: that of the scene.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub method: Option<Method>,
+}
+
+/// A place on a road.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct OnRoad {
+    /// The row of the road over which its middle is, counted from 0; also between rows.
+    #[serde(deserialize_with = "numbers::finite")]
+    pub row: f64,
+    /// How far to the right of the road's middle. Left out: 0.
+    #[serde(default, deserialize_with = "numbers::finite")]
+    pub aside: f64,
 }
 
 /// What stands around.
@@ -178,6 +200,9 @@ pub struct SceneClock {
     pub step: StepSize,
     /// How much simulated time passes in a second, from 0 to [`Clock::LARGEST_TIME_SCALE`].
     pub time_scale: f64,
+    /// The moment, in simulated time, that it shows when it is opened: it is stepped to there at once, and stands still until it is told to go on. Nothing: it
+    /// begins at 0 and goes.
+    pub opens_at: Option<f64>,
 }
 
 /// How a scene gives its step.
@@ -193,6 +218,11 @@ impl SceneClock {
     /// How many ticks a second has.
     pub const TICKS_PER_SECOND: f64 = 64.0;
 
+    /// How many steps there are to the moment that the scene shows when it is opened, to the nearest one; 0 where it begins at 0.
+    pub fn opening_steps(self) -> u64 {
+        (self.opens_at.unwrap_or(0.0) / self.dt()).round().min(Clock::MOST_STEPS_A_TICK as f64) as u64
+    }
+
     /// The step dt.
     pub fn dt(self) -> f64 {
         match self.step {
@@ -205,7 +235,7 @@ impl SceneClock {
 impl Default for SceneClock {
     /// The document's step, and one unit of time a second.
     fn default() -> Self {
-        Self { step: StepSize::Dt(DOCUMENT_DT), time_scale: 1.0 }
+        Self { step: StepSize::Dt(DOCUMENT_DT), time_scale: 1.0, opens_at: None }
     }
 }
 
@@ -219,6 +249,8 @@ struct ClockFields {
     substeps: Option<u32>,
     #[serde(default = "real_time", deserialize_with = "time_scale")]
     time_scale: f64,
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "numbers::optional_non_negative")]
+    opens_at: Option<f64>,
 }
 
 impl TryFrom<ClockFields> for SceneClock {
@@ -233,7 +265,7 @@ impl TryFrom<ClockFields> for SceneClock {
             (None, Some(substeps)) => StepSize::Substeps(substeps),
             (dt, None) => StepSize::Dt(dt.unwrap_or(DOCUMENT_DT)),
         };
-        Ok(Self { step, time_scale: fields.time_scale })
+        Ok(Self { step, time_scale: fields.time_scale, opens_at: fields.opens_at })
     }
 }
 
@@ -243,7 +275,7 @@ impl From<SceneClock> for ClockFields {
             StepSize::Dt(dt) => (Some(dt), None),
             StepSize::Substeps(substeps) => (None, Some(substeps)),
         };
-        Self { dt, substeps, time_scale: clock.time_scale }
+        Self { dt, substeps, time_scale: clock.time_scale, opens_at: clock.opens_at }
     }
 }
 

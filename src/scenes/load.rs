@@ -8,19 +8,23 @@ use std::{
 
 use bevy::math::DVec3;
 
-use super::{Camera, Placement, Props, SceneClock, SceneFile, parameters, spawn};
+use super::{Camera, Placement, Props, SceneClock, SceneFile, StepSize, parameters, roads::Roads, spawn};
 use crate::{
     body::{BodyError, Ground, LEAST_REST_FRACTION, Muscles, TravelingWaves},
     creatures::{
-        Body, Creature, FileError, MOST_PARTICLES, Pose,
+        Body, Creature, FileError, MOST_PARTICLES, Pose, RoadForm,
         library::{self, CREATURE, SCENE, Source},
         parse,
     },
     mechanics::{
         ground_distance,
         integrators::{Method, StickRule},
+        six_matrix::Road,
     },
 };
+
+/// The step of the six-matrix particle system, as printed.
+const SIX_MATRIX_DT: f64 = 0.01;
 
 /// A scene with its creatures, read and found to be good.
 #[derive(Clone, Debug)]
@@ -33,12 +37,14 @@ pub struct LoadedScene {
     pub warnings: Vec<String>,
     /// The blueprint of each creature, in the order of the scene, and where it came from.
     pub(super) creatures: Vec<(Source, Arc<Creature>)>,
+    /// The roads that it names.
+    pub(super) roads: Roads,
 }
 
 impl LoadedScene {
     /// The files on disk that it was read from.
     pub fn files(&self) -> BTreeSet<PathBuf> {
-        let sources = self.creatures.iter().map(|(source, _)| source).chain([&self.source]);
+        let sources = self.creatures.iter().map(|(source, _)| source).chain(self.roads.sources()).chain([&self.source]);
         sources
             .filter_map(|source| match source {
                 Source::Disk(path) => Some(path.clone()),
@@ -51,8 +57,29 @@ impl LoadedScene {
     pub(super) fn bodies(&self) -> impl Iterator<Item = Result<Body, FileError>> + '_ {
         self.file.creatures.iter().zip(&self.creatures).map(|(placement, (source, creature))| {
             let pose = Pose { at: DVec3::from(placement.at), heading: placement.heading };
+            let pose = match (placement.on_road, self.road_of(placement), creature.body.composed()) {
+                (None, ..) => pose,
+                (Some(place), Some((form, road)), Some(composed)) => {
+                    let stands = composed.pose_on(road, form.station(place.row), place.aside, placement.heading);
+                    let stands = stands.map_err(|error| conflict(&self.source, error))?;
+                    Pose { at: stands.at + pose.at, ..stands }
+                }
+                (Some(_), None, _) => {
+                    let problem = format!("`{}` has no road to stand on; give road: \"NAME\"", placement.name);
+                    return Err(scene_conflict(self, "on_road".into(), problem));
+                }
+                (Some(_), _, None) => {
+                    let problem = format!("`{}` has springs, which know no road; give `at`", placement.name);
+                    return Err(scene_conflict(self, "on_road".into(), problem));
+                }
+            };
             creature.body(pose).map_err(|error| conflict(source, error))
         })
+    }
+
+    /// The road that a creature moves on.
+    pub(super) fn road_of(&self, placement: &Placement) -> Option<(&RoadForm, &Road)> {
+        self.roads.get(placement.road.as_ref().or(self.file.road.as_ref())?)
     }
 }
 
@@ -83,7 +110,8 @@ pub fn load(name: &str) -> Result<LoadedScene, FileError> {
         }
         creatures.push(read[&placement.creature].clone());
     }
-    check(LoadedScene { file, source, warnings: Vec::new(), creatures })
+    let roads = Roads::read(&file, &source)?;
+    check(LoadedScene { file, source, warnings: Vec::new(), creatures, roads })
 }
 
 /// Reads a scene file by itself, without its creatures.
@@ -107,23 +135,37 @@ pub fn load_creature(name: &str) -> Result<LoadedScene, FileError> {
         title: stem.clone(),
         gravity: creature.gravity.unwrap_or(0.0),
         ground: creature.ground.clone(),
+        road: creature.road.clone(),
         creatures: vec![Placement {
             name: usable_name(&stem),
             creature: reference(&source),
             at: (0.0, 0.0, 0.0),
             heading: 0.0,
+            on_road: None,
+            road: None,
             method: None,
         }],
         props: Props::None,
         camera: Camera::default(),
-        clock: SceneClock::default(),
+        clock: match creature.body.composed() {
+            // t belongs to this model of motion as its other numbers do.
+            Some(_) => SceneClock { step: StepSize::Dt(SIX_MATRIX_DT), time_scale: 3.0, opens_at: None },
+            None => SceneClock::default(),
+        },
         method: Method::default(),
         stick: StickRule::default(),
         truth: None,
         budget: super::Budget::default(),
         set: Default::default(),
     };
-    check(LoadedScene { file, source: source.clone(), warnings: Vec::new(), creatures: vec![(source, creature)] })
+    let roads = Roads::read(&file, &source)?;
+    check(LoadedScene {
+        file,
+        source: source.clone(),
+        warnings: Vec::new(),
+        creatures: vec![(source, creature)],
+        roads,
+    })
 }
 
 /// How a scene file refers to a creature file wherever the scene file is.
@@ -169,7 +211,7 @@ fn check(mut scene: LoadedScene) -> Result<LoadedScene, FileError> {
     let mut warnings = Vec::new();
     for (i, body) in scene.bodies().enumerate() {
         let body = body?;
-        if let Some(ground) = &scene.file.ground {
+        if let Some(ground) = scene.file.ground.as_ref().filter(|_| body.six.is_none()) {
             check_above_ground(&scene, ground, i, &body)?;
         }
         if let Some(muscles) = &body.muscles
@@ -282,12 +324,12 @@ fn check_set(scene: &LoadedScene) -> Result<(), FileError> {
     Ok(())
 }
 
-fn scene_conflict(scene: &LoadedScene, path: String, problem: String) -> FileError {
+pub(super) fn scene_conflict(scene: &LoadedScene, path: String, problem: String) -> FileError {
     FileError::Conflict { file: scene.source.to_string(), path, problem }
 }
 
 /// What a body refuses, with the name of its file.
-fn conflict(source: &Source, error: BodyError) -> FileError {
+pub(super) fn conflict(source: &Source, error: BodyError) -> FileError {
     let file = source.to_string();
     let text = error.to_string();
     match text.split_once(": ") {

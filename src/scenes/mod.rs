@@ -8,6 +8,7 @@ pub mod garden;
 mod load;
 pub mod parameters;
 mod race;
+mod roads;
 mod save;
 mod spawn;
 mod switch;
@@ -15,7 +16,7 @@ mod switch;
 mod watch;
 
 pub use crate::creatures::FileError;
-pub use file::{Budget, Camera, DOCUMENT_DT, FIELD_OF_VIEW, Placement, Props, SceneClock, SceneFile, StepSize};
+pub use file::{Budget, Camera, DOCUMENT_DT, FIELD_OF_VIEW, OnRoad, Placement, Props, SceneClock, SceneFile, StepSize};
 pub use load::{LoadedScene, load, load_creature, read_scene};
 pub use race::{Ghost, Runner};
 pub use save::save;

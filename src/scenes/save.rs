@@ -13,7 +13,7 @@ use super::{
 };
 use crate::{
     creatures::{
-        library::{self, CREATURE, Source},
+        library::{self, CREATURE, ROAD, Source},
         options,
     },
     physics::Clock,
@@ -58,7 +58,7 @@ fn current(world: &mut World, scene: &LoadedScene, path: &Path) -> Result<SceneF
     file.set = parameters::changes(base, now);
     file.method = parameters::method(world);
     for (placement, method) in file.creatures.iter_mut().zip(parameters::methods(world)) {
-        placement.method = Some(method).filter(|method| *method != file.method);
+        placement.method = method.filter(|method| *method != file.method);
     }
     if let Some(clock) = world.get_resource::<Clock>() {
         let scale = clock.time_scale().unwrap_or(file.clock.time_scale);
@@ -70,6 +70,13 @@ fn current(world: &mut World, scene: &LoadedScene, path: &Path) -> Result<SceneF
     for (placement, (source, _)) in file.creatures.iter_mut().zip(&scene.creatures) {
         if library::find(CREATURE, &placement.creature, path.parent()).as_ref() != Ok(source) {
             placement.creature = portable(source, path);
+        }
+    }
+    let own = file.creatures.iter_mut().filter_map(|placement| placement.road.as_mut());
+    for name in own.chain(&mut file.road) {
+        let Some(source) = scene.roads.source(name) else { continue };
+        if library::find(ROAD, name, path.parent()).as_ref() != Ok(source) {
+            *name = portable(source, path);
         }
     }
     Ok(file)

@@ -82,12 +82,16 @@ fn spawn(world: &mut World, scene: &LoadedScene, bodies: Vec<crate::creatures::B
     let gravity = Gravity::new(file.gravity).ok().filter(|gravity| gravity.acceleration() > 0.0);
     let mut entities = Vec::with_capacity(bodies.len());
     for (placement, body) in file.creatures.iter().zip(bodies) {
-        let mut entity = world.spawn((
-            Name::new(placement.name.clone()),
-            SceneMember,
-            placement.method.unwrap_or(file.method),
-            file.stick,
-        ));
+        let mut entity = world.spawn((Name::new(placement.name.clone()), SceneMember));
+        if body.six.is_some() {
+            if let Some((_, road)) = scene.road_of(placement) {
+                entity.insert(road.clone());
+            }
+            entities.push(entity.id());
+            body.apply(entity);
+            continue;
+        }
+        entity.insert((placement.method.unwrap_or(file.method), file.stick));
         if let Some(gravity) = gravity {
             entity.insert(gravity);
         }

@@ -71,8 +71,29 @@ fn switch(world: &mut World) {
     try_open(world, scene);
 }
 
+/// Stops the time of a scene that shows a moment, and has one tick take it there; lets time go on in the scene that is opened after it.
+fn stand_still(world: &mut World, stands: bool, steps: u64) {
+    if let Some(mut clock) = world.get_resource_mut::<Clock>() {
+        clock.leap(steps);
+    }
+    if let Some(mut time) = world.get_resource_mut::<Time<Virtual>>() {
+        if stands { time.pause() } else { time.unpause() }
+    }
+    if stands && let Some(mut fixed) = world.get_resource_mut::<Time<Fixed>>() {
+        let tick = fixed.timestep();
+        fixed.accumulate_overstep(tick);
+    }
+}
+
 fn try_open(world: &mut World, scene: Result<LoadedScene, super::FileError>) {
-    if let Err(problem) = scene.and_then(|scene| open(world, scene)) {
+    let stood = world.get_resource::<Opened>().is_some_and(|Opened(scene)| scene.file.clock.opens_at.is_some());
+    let moment = scene.as_ref().map_or(0, |scene| scene.file.clock.opening_steps());
+    let stands = scene.as_ref().is_ok_and(|scene| scene.file.clock.opens_at.is_some());
+    let result = scene.and_then(|scene| open(world, scene));
+    if result.is_ok() && (stands || stood) {
+        stand_still(world, stands, moment);
+    }
+    if let Err(problem) = result {
         let text = problem.to_string();
         error!("{text}");
         world.write_message(SceneProblem { text });

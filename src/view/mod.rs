@@ -20,6 +20,7 @@ mod paint;
 mod peel;
 mod plain;
 mod quality;
+mod six;
 mod skins;
 mod steering;
 mod strand;
@@ -40,7 +41,10 @@ pub use quality::Quality;
 pub use steering::Selected;
 pub use window::window_plugins;
 
-use crate::scenes::{self, CurrentScene, Props};
+use crate::{
+    mechanics::six_matrix::Road,
+    scenes::{self, CurrentScene, Props},
+};
 
 /// Draws bodies and their surroundings. Add it after `DefaultPlugins`.
 #[derive(Clone, Copy, Debug, Default)]
@@ -56,14 +60,15 @@ impl Plugin for ViewPlugin {
             half::plugin,
             camera::plugin,
             skins::plugin,
+            six::plugin,
             ghost::plugin,
             peel::plugin,
             travel::plugin,
         ))
         .insert_resource(ClearColor(Color::srgb(0.72, 0.87, 0.95)))
-        .add_systems(Update, decorate.run_if(resource_exists_and_changed::<CurrentScene>));
+        .add_systems(Update, decorate.before(six::Lay).run_if(resource_exists_and_changed::<CurrentScene>));
         if app.is_plugin_added::<WinitPlugin>() {
-            app.add_plugins((help::plugin, drag::plugin, steering::plugin));
+            app.add_plugins((help::plugin, drag::plugin, steering::plugin, six::words));
         }
     }
 
@@ -87,6 +92,7 @@ fn decorate(
     scene: Res<CurrentScene>,
     quality: Res<Quality>,
     old: Query<Entity, With<Decor>>,
+    roads: Query<&Road>,
     mut commands: Commands,
     mut meshes: ResMut<Assets<Mesh>>,
     mut paints: ResMut<Assets<paint::Paint>>,
@@ -103,7 +109,7 @@ fn decorate(
                 let middle = DVec3::new(x, y, z).as_vec3();
                 meadow::set_up(ground, middle, *quality, &mut commands, &mut meshes, &mut paints);
             }
-            None => studio::set_up(*quality, &mut commands, &mut meshes, &mut paints),
+            None => studio::set_up(six::lowest(roads.iter()), *quality, &mut commands, &mut meshes, &mut paints),
         },
     }
 }

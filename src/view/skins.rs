@@ -5,7 +5,7 @@ use bevy::{
     prelude::*,
 };
 
-use super::{jelly, paint::Paint, plain, quality::Quality, strand, worm};
+use super::{jelly, paint::Paint, plain, quality::Quality, six, strand, worm};
 use crate::{
     body::{Lattice, Springs, Strand},
     creatures::Look,
@@ -36,6 +36,7 @@ struct Kits {
     worm: worm::WormKit,
     plain: plain::PlainKit,
     strand: strand::StrandKit,
+    six: six::SixKit,
 }
 
 type Bodies<'w, 's> = Query<
@@ -61,7 +62,7 @@ pub(super) struct Cloth<'w> {
     pub images: ResMut<'w, Assets<Image>>,
 }
 
-fn dress(
+pub(super) fn dress(
     bodies: Bodies,
     scene: Option<Res<CurrentScene>>,
     mut skins: ResMut<Skins>,
@@ -101,6 +102,7 @@ fn dress(
                 worm: worm::WormKit::new(&mut cloth.meshes, &mut cloth.paints, shadows, shelter),
                 plain: plain::PlainKit::new(&mut cloth.meshes, &mut cloth.paints, shadows),
                 strand: strand::StrandKit::default(),
+                six: six::SixKit::default(),
             }
         });
         let strand = strand.filter(|strand| strand.particles() == particles);
@@ -113,6 +115,10 @@ fn dress(
             (Look::GardenWorm, ..) if particles >= 2 => {
                 let dye = runner.map(Runner::color).map(|[r, g, b]| Color::srgb_u8(r, g, b));
                 worm::dress(body, particles, dye, &kits.worm, &mut cloth.paints, &mut commands)
+            }
+            (Look::SixMatrix(skin), _) => {
+                let Cloth { quality, meshes, paints, .. } = &mut cloth;
+                six::dress(body, skin, &mut kits.six, **quality, meshes, paints, &mut commands)
             }
             _ => plain::dress(body, particles, springs, &kits.plain, &mut commands),
         };

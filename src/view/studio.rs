@@ -17,13 +17,23 @@ const REACH: i32 = 30;
 /// The floor is a little lower than 0, so that balls at 0 are not cut in half.
 const FLOOR: f32 = -0.13;
 
-/// Spawns floor and sky.
-pub(super) fn set_up(quality: Quality, commands: &mut Commands, meshes: &mut Assets<Mesh>, paints: &mut Assets<Paint>) {
+/// The edge of a tile below a road, which is larger than all else.
+const LARGE: f32 = 4.0;
+
+/// Spawns floor and sky; the floor below the lowest stone of a road where there is one.
+pub(super) fn set_up(
+    lowest: Option<f32>,
+    quality: Quality,
+    commands: &mut Commands,
+    meshes: &mut Assets<Mesh>,
+    paints: &mut Assets<Paint>,
+) {
+    let (edge, height) = lowest.map_or((1.0, FLOOR), |lowest| (LARGE, lowest.min(FLOOR + 1.5) - 1.5));
     let mut floor = Clay::default();
     for x in -REACH..REACH {
         for z in -REACH..REACH {
             let color = tint(if (x + z) % 2 == 0 { 0xb9c4ae } else { 0xaab8a0 });
-            let corner = |dx: i32, dz: i32| Vec3::new((x + dx) as f32, FLOOR, (z + dz) as f32);
+            let corner = |dx: i32, dz: i32| Vec3::new((x + dx) as f32 * edge, height, (z + dz) as f32 * edge);
             floor.quad([corner(0, 1), corner(1, 1), corner(1, 0), corner(0, 0)], color);
         }
     }
@@ -33,7 +43,7 @@ pub(super) fn set_up(quality: Quality, commands: &mut Commands, meshes: &mut Ass
         Decor,
         NotShadowCaster,
         // Two tiles on, it looks the same.
-        Travels(2.0),
+        Travels(2.0 * edge),
         Mesh3d(meshes.add(floor.fire())),
         MeshMaterial3d(floor_paint),
     ));

@@ -35,6 +35,8 @@ mod picture_animals;
 mod race;
 mod saving;
 mod shows;
+mod six_house;
+mod six_matrix;
 mod stability;
 mod steering;
 mod stiffness;

@@ -9,6 +9,7 @@ mod linear;
 mod predicted;
 mod scene;
 mod search;
+mod six;
 mod step_matrix;
 
 use serde::{Serialize, Serializer};
@@ -17,6 +18,7 @@ use crate::{creatures::FileError, lab::ProblemBody, mechanics::integrators::Meth
 
 pub use predicted::predicted_limit;
 pub use scene::scene_limit;
+pub use six::linearised_six_limit;
 pub use step_matrix::{growth, linearised_limit};
 
 /// A scene's limit further from the linearised one than this part of it has a reason.
@@ -32,9 +34,8 @@ pub struct Limits {
     pub scene: String,
     /// The name of the body, and of those that are like it.
     pub body: String,
-    /// The method.
-    #[serde(serialize_with = "name")]
-    pub method: Method,
+    /// The name of the method; `SixMatrix` for bodies of the six-matrix particle system.
+    pub method: &'static str,
     /// From the eigenvalues of the linearised body; nothing where no formula is known.
     #[serde(serialize_with = "limit")]
     pub predicted: Option<f64>,
@@ -65,7 +66,7 @@ pub fn limits(scene: &LoadedScene) -> Result<Vec<Limits>, FileError> {
                 rows.push(Limits {
                     scene: scene.source.stem(),
                     body: body.name.clone(),
-                    method,
+                    method: method.name(),
                     predicted: None,
                     bound,
                     linearised: None,
@@ -83,7 +84,7 @@ pub fn limits(scene: &LoadedScene) -> Result<Vec<Limits>, FileError> {
             rows.push(Limits {
                 scene: scene.source.stem(),
                 body: body.name.clone(),
-                method,
+                method: method.name(),
                 predicted: predicted_limit(&parts),
                 bound: parts.stability_limit(0.0),
                 linearised,
@@ -92,16 +93,13 @@ pub fn limits(scene: &LoadedScene) -> Result<Vec<Limits>, FileError> {
             });
         }
     }
+    rows.extend(six::rows(scene)?);
     Ok(rows)
 }
 
 /// Whether two limits differ by more than is expected of them.
 fn is_apart(a: f64, b: f64) -> bool {
     a != b && (b - a).abs().partial_cmp(&(NEAR * a)).is_none_or(core::cmp::Ordering::is_gt)
-}
-
-fn name<S: Serializer>(method: &Method, serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.serialize_str(method.name())
 }
 
 /// JSON has no infinity.

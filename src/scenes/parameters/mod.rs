@@ -1,9 +1,10 @@
 //! Every live parameter under one path: the panel, scene files (`set`) and `--set` share this registry.
 //!
 //! `worm.springs.stiffness` is that of all springs of the body `worm`, `worm.springs[1].stiffness` that of one. Muscles are counted in the order
-//! of the springs that they drive. `clock.dt` and `clock.time_scale` belong to the scene.
+//! of the springs that they drive; `muscle`, `legs`, `weight` and `drive` are rules of a creature of the six-matrix particle system, in the order of its file. `clock.dt` and `clock.time_scale` belong to the scene.
 
 mod quantity;
+mod six;
 
 use core::ops::RangeInclusive;
 use std::collections::{BTreeMap, HashMap};
@@ -133,9 +134,9 @@ pub fn method(world: &mut World) -> Method {
     first.or_else(|| world.get_resource::<CurrentScene>().map(|scene| scene.file.method)).unwrap_or_default()
 }
 
-/// The methods of all bodies.
-pub(super) fn methods(world: &mut World) -> Vec<Method> {
-    bodies(world).into_iter().filter_map(|body| world.get::<Method>(body).copied()).collect()
+/// The methods of all bodies; nothing where a body has none.
+pub(super) fn methods(world: &mut World) -> Vec<Option<Method>> {
+    bodies(world).into_iter().map(|body| world.get::<Method>(body).copied()).collect()
 }
 
 /// The values of all bodies, element by element.

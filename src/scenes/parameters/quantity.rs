@@ -2,11 +2,11 @@
 
 use bevy::{ecs::world::EntityRef, prelude::*};
 
-use super::{Kind, Parameter};
+use super::{Kind, Parameter, six::SixQuantity};
 use crate::{
     body::{
-        BodyError, Gravity, Muscle, Muscles, Particle, ParticleId, Particles, Requirement, SpineFriction, Spring,
-        SpringId, Springs, TravelingWave, TravelingWaves,
+        BodyError, Gravity, Muscle, Muscles, Particle, ParticleId, Particles, Requirement, Rules, SpineFriction,
+        Spring, SpringId, Springs, TravelingWave, TravelingWaves,
     },
     creatures::Attitude,
     physics::{Clock, StartState},
@@ -27,6 +27,12 @@ pub(super) enum Group {
     Gravity,
     /// The attitude in which a block starts.
     Block,
+    Bonds,
+    Collisions,
+    Muscle,
+    Legs,
+    Weight,
+    Drive,
 }
 
 impl Group {
@@ -41,12 +47,28 @@ impl Group {
             Self::Friction => "friction",
             Self::Gravity => "gravity",
             Self::Block => "block",
+            Self::Bonds => "bonds",
+            Self::Collisions => "collisions",
+            Self::Muscle => "muscle",
+            Self::Legs => "legs",
+            Self::Weight => "weight",
+            Self::Drive => "drive",
         }
     }
 
     /// Whether its elements are counted.
     pub(super) fn is_indexed(self) -> bool {
-        matches!(self, Self::Springs | Self::Particles | Self::Muscles | Self::Waves)
+        matches!(
+            self,
+            Self::Springs
+                | Self::Particles
+                | Self::Muscles
+                | Self::Waves
+                | Self::Muscle
+                | Self::Legs
+                | Self::Weight
+                | Self::Drive
+        )
     }
 
     /// Takes the group off the front of the part of a path behind the body's name.
@@ -61,6 +83,12 @@ impl Group {
             Self::Friction,
             Self::Gravity,
             Self::Block,
+            Self::Bonds,
+            Self::Collisions,
+            Self::Muscle,
+            Self::Legs,
+            Self::Weight,
+            Self::Drive,
         ];
         (all.into_iter().find(|group| group.name() == &path[..end]), &path[end..])
     }
@@ -93,13 +121,15 @@ pub(super) enum Quantity {
     Ratchet,
     Gravity,
     Tilt,
+    /// Of a body of the six-matrix particle system.
+    Six(SixQuantity),
 }
 
 /// What is said about a quantity: group, field, what it must be, the usual range, unit and help.
-type Facts = (Group, &'static str, Requirement, (f64, f64), &'static str, &'static str);
+pub(super) type Facts = (Group, &'static str, Requirement, (f64, f64), &'static str, &'static str);
 
 impl Quantity {
-    pub(super) const OF_BODIES: [Self; 22] = [
+    pub(super) const OF_BODIES: [Self; 41] = [
         Self::Stiffness,
         Self::Damping,
         Self::RestLength,
@@ -122,6 +152,25 @@ impl Quantity {
         Self::Ratchet,
         Self::Gravity,
         Self::Tilt,
+        Self::Six(SixQuantity::Damping),
+        Self::Six(SixQuantity::BondStiffness),
+        Self::Six(SixQuantity::CollisionStiffness),
+        Self::Six(SixQuantity::Strength),
+        Self::Six(SixQuantity::Half),
+        Self::Six(SixQuantity::Seek),
+        Self::Six(SixQuantity::Push),
+        Self::Six(SixQuantity::Grip),
+        Self::Six(SixQuantity::Pull),
+        Self::Six(SixQuantity::Friction),
+        Self::Six(SixQuantity::Speed),
+        Self::Six(SixQuantity::Mean),
+        Self::Six(SixQuantity::Limit),
+        Self::Six(SixQuantity::Lift),
+        Self::Six(SixQuantity::Front),
+        Self::Six(SixQuantity::Side),
+        Self::Six(SixQuantity::Down),
+        Self::Six(SixQuantity::Out),
+        Self::Six(SixQuantity::Reach),
     ];
 
     fn facts(self) -> Facts {
@@ -221,6 +270,7 @@ impl Quantity {
                 "°",
                 "how far it leans; setting it puts it back to its start",
             ),
+            Self::Six(six) => six.facts(),
         }
     }
 
@@ -280,9 +330,13 @@ impl Quantity {
 
     /// How many of it a body has.
     pub(super) fn count(self, body: EntityRef) -> usize {
+        let has_springs = !body.contains::<Rules>();
         match self.group() {
+            _ if matches!(self, Self::Six(_)) => self.read(body).len(),
             Group::Clock => 0,
             Group::Springs => body.get::<Springs>().map_or(0, Springs::len),
+            // The particles of the six-matrix system are of unit mass.
+            Group::Particles if !has_springs => 0,
             Group::Particles => body.get::<Particles>().map_or(0, Particles::len),
             Group::Muscles => body.get::<Muscles>().map_or(0, Muscles::len),
             Group::Waves => body.get::<TravelingWaves>().map_or(0, TravelingWaves::len),
@@ -290,13 +344,20 @@ impl Quantity {
             // Only muscles that can be told to rest need a brake.
             Group::Friction if self == Self::Brake && !body.contains::<TravelingWaves>() => 0,
             Group::Friction => usize::from(body.contains::<SpineFriction>()),
-            Group::Gravity => usize::from(body.contains::<Particles>()),
+            Group::Gravity => usize::from(body.contains::<Particles>() && has_springs),
+            Group::Bonds | Group::Collisions | Group::Muscle | Group::Legs | Group::Weight | Group::Drive => 0,
             Group::Block => usize::from(body.contains::<Attitude>()),
         }
     }
 
     /// The values of a body, one an element; none where the body has no such thing.
     pub(super) fn read(self, body: EntityRef) -> Vec<f64> {
+        if let Self::Six(six) = self {
+            return six.read(body);
+        }
+        if self.count(body) == 0 {
+            return Vec::new();
+        }
         match self.group() {
             Group::Clock => Vec::new(),
             Group::Springs => body
@@ -315,12 +376,12 @@ impl Quantity {
                 .map(|waves| waves.iter().map(|mut wave| *self.of_wave(&mut wave)).collect())
                 .unwrap_or_default(),
             Group::Gait => body.get::<TravelingWaves>().map(|waves| self.of_gait(waves)).into_iter().collect(),
-            Group::Friction if self.count(body) == 0 => Vec::new(),
             Group::Friction => {
                 body.get::<SpineFriction>().map(|friction| self.of_friction(friction)).into_iter().collect()
             }
             Group::Gravity => vec![body.get::<Gravity>().map_or(0.0, |gravity| gravity.acceleration())],
             Group::Block => body.get::<Attitude>().map(Attitude::tilt).into_iter().collect(),
+            Group::Bonds | Group::Collisions | Group::Muscle | Group::Legs | Group::Weight | Group::Drive => Vec::new(),
         }
     }
 
@@ -337,8 +398,18 @@ impl Quantity {
         for i in changed {
             // Counts come from vectors that are indexed by u32.
             let id = i as u32;
+            if let Self::Six(six) = self {
+                six.write(&mut body, i, value)?;
+                continue;
+            }
             match self.group() {
-                Group::Clock => {}
+                Group::Clock
+                | Group::Bonds
+                | Group::Collisions
+                | Group::Muscle
+                | Group::Legs
+                | Group::Weight
+                | Group::Drive => {}
                 Group::Springs => {
                     if let Some(mut springs) = body.get_mut::<Springs>()
                         && let Some(mut spring) = springs.get(SpringId(id))

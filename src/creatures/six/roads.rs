@@ -1,0 +1,316 @@
+//! Roads as files: forms with numbers, which become particles.
+
+use core::f64::consts::{PI, TAU};
+
+use bevy::math::DVec3;
+use serde::{Deserialize, Serialize};
+
+use crate::{
+    body::{BodyError, Requirement, check},
+    creatures::{MOST_PARTICLES, numbers, parse},
+    mechanics::six_matrix::Road,
+};
+
+/// A road: what `*.road.ron` holds.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename = "Road", deny_unknown_fields)]
+pub struct RoadFile {
+    /// The version of the format: 1.
+    #[serde(deserialize_with = "parse::version")]
+    pub version: u32,
+    /// Its form.
+    pub form: RoadForm,
+}
+
+/// Reads nothing but the version of a road file.
+#[derive(Deserialize)]
+#[serde(rename = "Road")]
+pub struct OnlyVersion {
+    #[serde(rename = "version", deserialize_with = "parse::version")]
+    _version: u32,
+}
+
+impl parse::CurrentVersion for RoadFile {
+    type OnlyVersion = OnlyVersion;
+}
+
+/// The form of a road, which goes on in rows of particles.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum RoadForm {
+    /// A straight, level strip.
+    Strip(Strip),
+    /// Rough Road.
+    Rough(Rough),
+    /// A ramp that winds upwards.
+    Helix(Helix),
+    /// Along points.
+    Course(Course),
+}
+
+/// A straight strip: row r and column c are at `at`, turned by `heading`, and from there r·spacing ahead and (c − (columns − 1)/2)·spacing to the right.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Strip {
+    /// How many rows.
+    pub rows: u32,
+    /// How many particles in a row.
+    pub columns: u32,
+    /// From one to the next, in both directions; above zero.
+    #[serde(deserialize_with = "numbers::positive")]
+    pub spacing: f64,
+    /// The middle of the first row.
+    #[serde(deserialize_with = "numbers::vector")]
+    pub at: (f64, f64, f64),
+    /// Which way it goes, in degrees about the vertical; positive turns from +x towards +z. Left out: 0.
+    #[serde(default, deserialize_with = "numbers::finite")]
+    pub heading: f64,
+    /// By how much every other row is lower. Left out: 0, flat.
+    #[serde(default, deserialize_with = "numbers::finite")]
+    pub bump: f64,
+}
+
+/// Rough Road (Holopainen and Rönkkö 2007, section 5): rings of particles along an S of two curves, 1 ≤ 30 of them down and the others up again.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Rough {
+    /// How its height goes.
+    pub height: Height,
+    /// What is added to the height of every other ring; −0.5 or 0.5, which print does not tell. The Inchworm from its printed place gets to the end only with −0.5.
+    #[serde(deserialize_with = "numbers::finite")]
+    pub bump: f64,
+    /// The x and z of its middle; (−8, −8). Only these put the printed Inchworm on its start.
+    pub middle: (f64, f64),
+    /// The signs of the cosine and the sine of its plan; (1, 1).
+    pub signs: (f64, f64),
+    /// How many rings; 60.
+    pub rings: u32,
+    /// How many particles a ring has; 30.
+    pub ring: u32,
+}
+
+/// The two readings of Rough Road's height.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Height {
+    /// Down by 11 − α/5 and up by α/6 again. The Roller gets round the first curve only here, and the second is the uphill one.
+    #[default]
+    Valley,
+    /// The same upside down.
+    Hill,
+}
+
+/// A helix about the vertical: at the angle θ it is at center + (radius·cos θ, rise·θ/2π, radius·sin θ), and it rises to the right.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Helix {
+    /// Where its axis begins. Left out: the origin.
+    #[serde(default, deserialize_with = "numbers::vector")]
+    pub center: (f64, f64, f64),
+    /// How far its middle is from the axis, above zero.
+    #[serde(deserialize_with = "numbers::positive")]
+    pub radius: f64,
+    /// How much it rises in a turn.
+    #[serde(deserialize_with = "numbers::finite")]
+    pub rise: f64,
+    /// How many turns it has, above zero.
+    #[serde(deserialize_with = "numbers::positive")]
+    pub turns: f64,
+    /// How many particles a row has.
+    pub columns: u32,
+    /// From one to the next, above zero.
+    #[serde(deserialize_with = "numbers::positive")]
+    pub spacing: f64,
+}
+
+/// A road along points, round at none of them: give many where it is to bend.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Course {
+    /// The points of its middle, two or more.
+    pub points: Vec<(f64, f64, f64)>,
+    /// Its width, above zero.
+    #[serde(deserialize_with = "numbers::positive")]
+    pub width: f64,
+    /// From row to row, and from particle to particle in a row, above zero.
+    #[serde(deserialize_with = "numbers::positive")]
+    pub spacing: f64,
+    /// How many particles stand in a ring as wide as the road, as on Rough Road, in place of each row. Left out: none, a row goes straight across.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ring: Option<u32>,
+}
+
+impl Default for Rough {
+    fn default() -> Self {
+        Self { height: Height::Valley, bump: -0.5, middle: (-8.0, -8.0), signs: (1.0, 1.0), rings: 60, ring: 30 }
+    }
+}
+
+/// A place on a road.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Station {
+    /// The middle of the road there.
+    pub middle: DVec3,
+    /// Which way it goes, seen from above; of length 1.
+    pub ahead: DVec3,
+}
+
+impl Station {
+    /// To its right; of length 1.
+    pub fn right(self) -> DVec3 {
+        DVec3::new(-self.ahead.z, 0.0, self.ahead.x)
+    }
+}
+
+impl RoadForm {
+    /// Its particles.
+    ///
+    /// # Errors
+    /// If it has too many of them, or a number or its points allow no road.
+    pub fn build(&self) -> Result<Road, BodyError> {
+        let (rows, each) = self.counts()?;
+        let count = rows.saturating_mul(each);
+        if count > MOST_PARTICLES {
+            return Err(BodyError::Inconsistent {
+                path: "form".into(),
+                problem: format!("comes to {count} particles; a road has at most {MOST_PARTICLES}"),
+            });
+        }
+        let points = (0..rows).flat_map(|row| (0..each).map(move |column| self.particle(row, each, column)));
+        // The middle goes on to the end of the last row's stretch, as it begins at the start of the first.
+        let line = (0..=rows).map(|row| self.station(row as f64).middle);
+        Road::new(points.collect(), if rows == 0 { Vec::new() } else { line.collect() })
+    }
+
+    /// How many rows it has, and how many particles in each.
+    fn counts(&self) -> Result<(usize, usize), BodyError> {
+        let across = |width: f64, spacing: f64| (width / spacing).round().max(0.0) as usize + 1;
+        match self {
+            Self::Strip(strip) => Ok((strip.rows as usize, strip.columns as usize)),
+            Self::Rough(rough) => Ok((rough.rings as usize, rough.ring as usize)),
+            Self::Helix(helix) => {
+                let length = TAU * helix.turns * helix.radius.hypot(helix.rise / TAU);
+                Ok(((length / helix.spacing).ceil() as usize, helix.columns as usize))
+            }
+            Self::Course(course) => {
+                for (i, &(x, y, z)) in course.points.iter().enumerate() {
+                    for value in [x, y, z] {
+                        check(value, Requirement::Finite, || format!("form.points[{i}]"))?;
+                    }
+                }
+                let length = course.length();
+                if course.points.len() < 2 || length == 0.0 {
+                    let problem = "lead nowhere; give two or more that are apart".into();
+                    return Err(BodyError::Inconsistent { path: "form.points".into(), problem });
+                }
+                let each = course.ring.map_or_else(|| across(course.width, course.spacing), |ring| ring as usize);
+                Ok(((length / course.spacing).ceil() as usize, each))
+            }
+        }
+    }
+
+    /// Where it is at a row, counted from 0; between rows, in between.
+    pub fn station(&self, row: f64) -> Station {
+        match self {
+            Self::Strip(strip) => {
+                let ahead = direction(strip.heading);
+                Station { middle: DVec3::from(strip.at) + row * strip.spacing * ahead, ahead }
+            }
+            Self::Rough(rough) => rough.station(row),
+            Self::Helix(helix) => {
+                let angle = row * helix.spacing / helix.radius.hypot(helix.rise / TAU);
+                let (sin, cos) = libm::sincos(angle);
+                let middle = DVec3::from(helix.center)
+                    + DVec3::new(helix.radius * cos, helix.rise * angle / TAU, helix.radius * sin);
+                Station { middle, ahead: DVec3::new(-sin, 0.0, cos) }
+            }
+            Self::Course(course) => course.station(row * course.spacing),
+        }
+    }
+
+    fn particle(&self, row: usize, each: usize, column: usize) -> DVec3 {
+        let spacing = match self {
+            Self::Strip(strip) => strip.spacing,
+            Self::Rough(rough) => return rough.particle(row, column),
+            Self::Helix(helix) => helix.spacing,
+            Self::Course(course) => match course.ring {
+                None => course.spacing,
+                Some(_) => {
+                    let (sin, cos) = libm::sincos(TAU * column as f64 / each as f64);
+                    return self.station(row as f64).middle + 0.5 * course.width * DVec3::new(cos, 0.0, sin);
+                }
+            },
+        };
+        let place = self.station(row as f64);
+        let aside = spacing * (column as f64 - 0.5 * (each as f64 - 1.0));
+        let lower = match self {
+            Self::Strip(strip) => strip.bump * (row % 2) as f64,
+            _ => 0.0,
+        };
+        place.middle + aside * place.right() - lower * DVec3::Y
+    }
+}
+
+impl Rough {
+    /// The middle without bumps, and the direction in which it goes on over a tenth of a row.
+    fn station(&self, row: f64) -> Station {
+        let ahead = self.middle_at(row + 0.05) - self.middle_at(row - 0.05);
+        Station { middle: self.middle_at(row), ahead: ahead.with_y(0.0).normalize_or(DVec3::Z) }
+    }
+
+    fn middle_at(&self, row: f64) -> DVec3 {
+        let gamma = PI / 30.0;
+        let (cos, sin) = (libm::cos(0.5 * row * gamma), libm::sin(row * gamma));
+        let plan = 30.0 * DVec3::new(self.signs.0 * cos, 0.0, self.signs.1 * sin);
+        DVec3::new(self.middle.0, self.height(row), self.middle.1) + plan
+    }
+
+    fn height(&self, row: f64) -> f64 {
+        let valley = if row > 30.0 { row / 6.0 } else { 11.0 - row / 5.0 };
+        match self.height {
+            Height::Valley => valley,
+            Height::Hill => -valley,
+        }
+    }
+
+    /// p⁰ of particle β of ring α.
+    fn particle(&self, row: usize, column: usize) -> DVec3 {
+        let bump = self.bump * (row % 2) as f64;
+        let (sin, cos) = libm::sincos(2.0 * column as f64 * (PI / 30.0));
+        let ring = 8.0 * DVec3::new(self.signs.0 * cos, 0.0, self.signs.1 * sin);
+        self.station(row as f64).middle + DVec3::new(0.0, bump, 0.0) + ring
+    }
+}
+
+impl Course {
+    fn pieces(&self) -> impl Iterator<Item = [DVec3; 2]> + '_ {
+        self.points.windows(2).map(|ends| [DVec3::from(ends[0]), DVec3::from(ends[1])])
+    }
+
+    fn length(&self) -> f64 {
+        self.pieces().map(|[from, to]| from.distance(to)).sum()
+    }
+
+    /// So far along its points; beyond its end straight on.
+    fn station(&self, way: f64) -> Station {
+        let (mut left, mut place) = (way, Station { middle: DVec3::ZERO, ahead: DVec3::X });
+        for [from, to] in self.pieces() {
+            let length = from.distance(to);
+            if length == 0.0 {
+                continue;
+            }
+            let ahead = (to - from).with_y(0.0).normalize_or(place.ahead);
+            place = Station { middle: from + (to - from) * (left / length), ahead };
+            if left <= length {
+                break;
+            }
+            left -= length;
+        }
+        place
+    }
+}
+
+/// The direction of a heading in degrees.
+fn direction(degrees: f64) -> DVec3 {
+    let pose = crate::creatures::Pose { at: DVec3::ZERO, heading: degrees };
+    let (cos, sin) = pose.direction();
+    DVec3::new(cos, 0.0, sin)
+}

@@ -1,0 +1,72 @@
+//! What the creatures are at, in words at the edge of the window.
+
+use bevy::prelude::*;
+use bevy_egui::{
+    EguiContexts, EguiPrimaryContextPass,
+    egui::{self, Align2, Color32, RichText},
+};
+
+use crate::{
+    body::{Rule, Rules},
+    mechanics::six_matrix::{Road, look},
+    physics::six_parts,
+};
+
+pub(in crate::view) fn plugin(app: &mut App) {
+    app.add_systems(EguiPrimaryContextPass, write);
+}
+
+/// One line a creature: which beams miss and what is decided, or the phase of the muscle and which legs grip.
+fn write(mut contexts: EguiContexts, bodies: Query<(EntityRef, &Name), With<Rules>>) -> Result {
+    let lines: Vec<_> = bodies.iter().filter_map(|(body, name)| Some(format!("{name}: {}", words(body)?))).collect();
+    if lines.is_empty() {
+        return Ok(());
+    }
+    egui::Area::new("six words".into()).anchor(Align2::CENTER_BOTTOM, [0.0, -14.0]).interactable(false).show(
+        contexts.ctx_mut()?,
+        |ui| {
+            egui::Frame::popup(ui.style()).show(ui, |ui| {
+                for line in lines {
+                    ui.label(RichText::new(line).color(Color32::WHITE));
+                }
+            });
+        },
+    );
+    Ok(())
+}
+
+fn words(body: EntityRef<'_>) -> Option<String> {
+    let parts = six_parts(body)?;
+    let mut words = Vec::new();
+    for rule in parts.rules.iter() {
+        match rule {
+            Rule::Counter(counter) => {
+                let count = parts.columns.memory().get(counter.on.first()?.index())?.x;
+                let phase = if count > 0.0 { "contracts" } else { "relaxes" };
+                words.push(format!("{phase}, step {:.0} of {:.0}", count.abs(), counter.half));
+            }
+            Rule::Drive(drive) => {
+                let position: Vec<_> = parts.particles.positions().collect();
+                let sight = look(drive, &position, body.get::<Road>());
+                let wheel = |goal: f64| match goal {
+                    goal if goal > 0.0 => "forwards",
+                    goal if goal < 0.0 => "backwards",
+                    _ => "free",
+                };
+                let (left, right) = sight.goals;
+                words.push(format!(
+                    "beams that miss: {}; left {}, right {}",
+                    sight.decision(),
+                    wheel(left),
+                    wheel(right)
+                ));
+            }
+            _ => {}
+        }
+    }
+    let legs: Vec<_> = parts.grips().map(|(_, grips)| if grips { "grips" } else { "free" }).collect();
+    if !legs.is_empty() {
+        words.push(format!("legs from the front: {}", legs.join(", ")));
+    }
+    Some(words.join("; "))
+}
