@@ -4,7 +4,7 @@ use bevy::{ecs::system::SystemParam, prelude::*, window::PrimaryWindow};
 
 use super::camera::{PointerOnPanel, SceneCamera};
 use crate::{
-    body::{ParticleId, Particles, Pull},
+    body::{ParticleId, Particles, Pull, Rules},
     physics::{Frozen, Shown},
 };
 
@@ -39,12 +39,12 @@ impl Pointer<'_, '_> {
     }
 }
 
-/// Takes the particle under the pointer.
+/// Takes the particle under the pointer. Bodies that rules move have no springs that a hand could pull against.
 fn take(
     buttons: Res<ButtonInput<MouseButton>>,
     on_panel: Res<PointerOnPanel>,
     pointer: Pointer,
-    bodies: Query<(Entity, &Shown, &Particles), Without<Frozen>>,
+    bodies: Query<(Entity, &Shown, &Particles), (Without<Frozen>, Without<Rules>)>,
     mut held: ResMut<Held>,
     mut commands: Commands,
 ) {

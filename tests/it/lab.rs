@@ -7,8 +7,8 @@ use wriggle::{
     body::{Gravity, Muscle, Muscles, Particle, ParticleId, Particles, SpineFriction, Spring, SpringId, Springs, Wave},
     creatures::library,
     lab::{
-        Cache, Candidate, GaitSpeeds, Problem, ProblemBody, Reference, Search, Setting, SweepOptions, Truth, Unit,
-        cheapest, choose, frontier, measure, work_precision,
+        Cache, Candidate, GaitSpeeds, LabError, Problem, ProblemBody, Reference, Search, Setting, SweepOptions, Truth,
+        Unit, cheapest, choose, frontier, measure, work_precision,
     },
     mechanics::integrators::{Method, StickRule},
     scenes,
@@ -522,7 +522,11 @@ fn gaits_are_chosen_by_their_speed() {
 /// Whether the setting of a scene is good enough, and not 1.5 times as dear as the cheapest.
 fn is_well_chosen(name: &str) {
     let problem = Problem::of(&scenes::load(name).unwrap()).unwrap();
-    let truth = Truth::of(&problem, &Cache::none()).unwrap();
+    let truth = match Truth::of(&problem, &Cache::none()) {
+        // What is budgeted in pixels and has no reference keeps the step of its document.
+        Err(LabError::Unsupported { .. }) if problem.gait_speed.is_none() => return,
+        truth => truth.unwrap(),
+    };
     let found = choose(&problem, &truth, Search::Cheapest, &mut |_, _, _| {}).unwrap();
     let Candidate { setting, error, cost } = found.own;
     assert!(error.is_some_and(|error| error <= found.budget), "{name}: {error:?} of {}", found.budget);
