@@ -321,8 +321,11 @@ fn a_torn_block_falls_apart_and_the_watch_is_content() {
         };
         let width = width(0).max(width(2));
         let torn = app.world().get::<Tearing>(block).unwrap().count();
+        // Back at its start it is whole again.
+        app.world_mut().resource_mut::<Clock>().set_steps_per_tick(1);
         app.world_mut().write_message(Restart);
         app.update();
+        assert_eq!(app.world().get::<Tearing>(block).unwrap().count(), 0);
         (torn, width)
     };
     let (torn, width) = torn_after(0.1);
