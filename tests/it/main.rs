@@ -17,7 +17,6 @@ mod friction;
 mod gallery;
 mod garden_worm;
 mod jelly;
-mod jelly_exercise;
 mod jelly_files;
 mod jelly_limits;
 mod jelly_regular;

@@ -5,6 +5,7 @@ use std::time::Instant;
 use bevy::math::DVec3;
 use faer::{Mat, Side};
 
+use super::ExerciseOptions;
 use crate::{
     body::{BodyError, Gravity, Ground, MassDamping, Neighbours, Particle, ParticleId},
     creatures::{Body, Creature, JellyPlan, NeighboursPlan, Pose, Rotation, SpringPlan},
@@ -177,9 +178,15 @@ impl Block {
     }
 }
 
-/// Whether a free block that trembles stays whole for 3000 steps and 400 units of time.
-fn is_stable(plan: &JellyPlan, method: Method, damping: Option<MassDamping>, dt: f64) -> Result<bool, BodyError> {
-    let steps = 3000.max((400.0 / dt) as u64);
+/// Whether a free block that trembles stays whole for as many steps, and for 400 units of time if these are 3000.
+fn is_stable(
+    plan: &JellyPlan,
+    method: Method,
+    damping: Option<MassDamping>,
+    dt: f64,
+    trial: u32,
+) -> Result<bool, BodyError> {
+    let steps = u64::from(trial).max((f64::from(trial) * 400.0 / 3000.0 / dt) as u64);
     let block = Block { damping, ..Block::new(plan.clone(), method, dt)? };
     let mut block = block.trembling(1e-3)?;
     for _ in 0..20 {
@@ -191,17 +198,17 @@ fn is_stable(plan: &JellyPlan, method: Method, damping: Option<MassDamping>, dt:
     Ok(true)
 }
 
-/// The largest stable step, by halving the interval from 0 to so much.
+/// The largest stable step in an interval, by halving it.
 pub(super) fn largest_step(
     plan: &JellyPlan,
     method: Method,
     damping: Option<MassDamping>,
     [mut low, mut high]: [f64; 2],
-    halvings: u32,
+    options: &ExerciseOptions,
 ) -> Result<f64, BodyError> {
-    for _ in 0..halvings {
+    for _ in 0..options.halvings {
         let middle = 0.5 * (low + high);
-        if is_stable(plan, method, damping, middle)? { low = middle } else { high = middle }
+        if is_stable(plan, method, damping, middle, options.trial)? { low = middle } else { high = middle }
     }
     Ok(low)
 }
