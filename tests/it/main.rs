@@ -17,6 +17,7 @@ mod friction;
 mod gallery;
 mod garden_worm;
 mod jelly;
+mod jelly_exercise;
 mod jelly_files;
 mod jelly_limits;
 mod jelly_regular;

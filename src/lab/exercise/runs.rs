@@ -79,7 +79,7 @@ impl Block {
         Self { damping: Some(damping), ..self }
     }
 
-    /// Lets its masses tremble a little, each its own way; along one axis where nothing holds it against shear.
+    /// Lets its masses tremble a little, each its own way; its layers as a whole where nothing holds it against shear.
     fn trembling(mut self, speed: f64) -> Result<Self, BodyError> {
         let one_axis = self
             .body
@@ -87,7 +87,9 @@ impl Block {
             .is_some_and(|(lattice, _)| !lattice.joins(Neighbours::Faces) && !lattice.joins(Neighbours::Cubes));
         let ways = if one_axis { DVec3::Y } else { DVec3::ONE };
         for i in 0..self.body.particles.len() as u32 {
-            let wobble = |prime: u32, modulus: u32| f64::from(i * prime % modulus) / f64::from(modulus) - 0.5;
+            let layer = self.body.particles.position(ParticleId(i)).map_or(0, |place| place.y.round() as u32);
+            let seed = if one_axis { layer } else { i };
+            let wobble = |prime: u32, modulus: u32| f64::from(seed * prime % modulus) / f64::from(modulus) - 0.5;
             let velocity = DVec3::new(wobble(7, 11), wobble(5, 13), wobble(3, 17)) * ways * speed;
             if let Some(particle) = self.body.particles.get(ParticleId(i)) {
                 self.body.particles.set(ParticleId(i), Particle { velocity, ..particle })?;
