@@ -78,6 +78,8 @@ struct Run {
 pub struct Springs {
     particles: usize,
     ends: Vec<[ParticleId; 2]>,
+    /// Whether a spring was given other ends than it was made with: what knows the springs by their order then knows them no more.
+    rewired: bool,
     /// In order; no two beside each other have the same law.
     runs: Vec<Run>,
 }
@@ -129,6 +131,7 @@ impl Springs {
             });
         }
         spring.check(i, self.particles)?;
+        self.rewired |= self.ends[i] != spring.ends;
         self.ends[i] = spring.ends;
         self.set_law(i, law(&spring));
         Ok(())
@@ -148,9 +151,11 @@ impl Springs {
         &self.ends
     }
 
-    /// The first of these springs, if all of them have its stiffness, damping and rest length; nothing where they differ or there is none.
+    /// The first of these springs, if all of them have its stiffness, damping and rest length; nothing where they differ, there is none, or a spring was given other
+    /// ends since all were made.
     pub fn uniform(&self, range: Range<usize>) -> Option<Spring> {
-        let last = range.end.checked_sub(1).filter(|&last| last >= range.start && last < self.len())?;
+        let last =
+            range.end.checked_sub(1).filter(|&last| last >= range.start && last < self.len() && !self.rewired)?;
         let run = self.run_of(range.start);
         (last < self.runs[run].end).then(|| spring(self.ends[range.start], self.runs[run].law))
     }

@@ -110,3 +110,18 @@ fn show(held: Res<Held>, pulls: Query<(&Pull, &Shown)>, mut lines: Gizmos) {
     let Some(&at) = shown.positions().get(pull.particle.index()) else { return };
     lines.arrow(at, pull.target.as_vec3() - offset, STRING);
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_particle_under_the_pointer_is_the_nearest_that_it_meets() {
+        let ray = Ray3d { origin: Vec3::new(0.0, 0.0, 20.0), direction: Dir3::NEG_Z };
+        // Behind another, beside, a little off, and behind the camera.
+        let positions = [Vec3::ZERO, Vec3::X * 3.0, Vec3::new(0.1, 0.2, 5.0), Vec3::new(0.3, 0.0, 5.1), Vec3::Z * 30.0];
+        assert_eq!(under(ray, &positions).map(|(i, _)| i), Some(2));
+        assert_eq!(under(ray, &positions[..1]).map(|(i, _)| i), Some(0));
+        assert_eq!(under(ray, &positions[1..2]), None);
+    }
+}

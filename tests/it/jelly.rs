@@ -147,13 +147,13 @@ fn a_block_without_springs_falls_as_its_masses_do() {
     assert!(particles(&app, block).positions().all(|x| x.y == 0.0), "all masses lie on the floor");
 }
 
-#[test]
-fn blocks_with_diagonals_keep_their_shape_in_every_attitude() {
+/// Drops blocks with face diagonals in all attitudes, with a rate of damping of 0.1.
+fn keep_their_shape(count: u32, dt: f64, time: f64) {
     for kinds in [KINDS[1], KINDS[3]] {
         for (tilt, rotation) in ATTITUDES {
-            let plan = JellyPlan { tilt, rotation, drop: 2.0, ..cube(5, kinds, 0.0) };
-            let damping = Some(MassDamping::per_step(0.01).unwrap());
-            let (mut app, block) = falling(plan, Method::DampedVerlet, damping, 0.1, 20_000);
+            let plan = JellyPlan { tilt, rotation, drop: 2.0, ..cube(count, kinds, 0.0) };
+            let damping = Some(MassDamping::per_step(0.1 * dt).unwrap());
+            let (mut app, block) = falling(plan, Method::DampedVerlet, damping, dt, (time / dt) as u64);
             app.update();
             let shape = shape(&app, block);
             assert!(shape.shape_error <= 0.01, "{kinds:?} {tilt} {rotation:?}: {shape:?}");
@@ -163,19 +163,41 @@ fn blocks_with_diagonals_keep_their_shape_in_every_attitude() {
 }
 
 #[test]
-fn a_block_of_edges_alone_stands_upright_and_collapses_when_it_leans() {
+fn blocks_with_diagonals_keep_their_shape_in_every_attitude() {
+    keep_their_shape(3, 0.25, 1000.0);
+}
+
+#[test]
+#[ignore = "takes a minute; cargo test --release --no-default-features --test it -- --ignored jelly"]
+fn blocks_of_five_keep_their_shape_at_the_exercises_own_step() {
+    keep_their_shape(5, 0.1, 2000.0);
+}
+
+/// Drops blocks without diagonals in all attitudes.
+fn stand_or_collapse(count: u32, dt: f64) {
     for (tilt, rotation) in ATTITUDES {
-        let plan = JellyPlan { tilt, rotation, drop: 2.0, ..cube(5, KINDS[0], 0.0) };
-        let damping = Some(MassDamping::per_step(0.01).unwrap());
-        let (mut app, block) = falling(plan, Method::DampedVerlet, damping, 0.1, 10_000);
+        let plan = JellyPlan { tilt, rotation, drop: 2.0, ..cube(count, KINDS[0], 0.0) };
+        let damping = Some(MassDamping::per_step(0.1 * dt).unwrap());
+        let (mut app, block) = falling(plan, Method::DampedVerlet, damping, dt, (1000.0 / dt) as u64);
         app.update();
         let shape = shape(&app, block);
         if tilt == 0.0 && rotation.is_none() {
-            assert!(shape.height > 3.9, "{shape:?}");
+            assert!(shape.height > f64::from(count) - 1.1, "{shape:?}");
         } else {
             assert!(shape.height < 0.1, "{tilt} {rotation:?}: {shape:?}");
         }
     }
+}
+
+#[test]
+fn a_block_of_edges_alone_stands_upright_and_collapses_when_it_leans() {
+    stand_or_collapse(4, 0.25);
+}
+
+#[test]
+#[ignore = "takes a minute; cargo test --release --no-default-features --test it -- --ignored jelly"]
+fn five_layers_of_edges_alone_stand_or_collapse_at_the_exercises_own_step() {
+    stand_or_collapse(5, 0.1);
 }
 
 #[test]
@@ -321,8 +343,11 @@ fn a_torn_block_falls_apart_and_the_watch_is_content() {
         };
         let width = width(0).max(width(2));
         let torn = app.world().get::<Tearing>(block).unwrap().count();
+        // Back at its start it is whole again.
+        app.world_mut().resource_mut::<Clock>().set_steps_per_tick(1);
         app.world_mut().write_message(Restart);
         app.update();
+        assert_eq!(app.world().get::<Tearing>(block).unwrap().count(), 0);
         (torn, width)
     };
     let (torn, width) = torn_after(0.1);

@@ -5,7 +5,7 @@ use wriggle::lab::exercise::{ExerciseOptions, exercise, html, text};
 #[test]
 fn the_exercise_is_answered_with_numbers_near_their_theory() {
     let mut told = Vec::new();
-    let options = ExerciseOptions { count: 3, time: 900.0, halvings: 6 };
+    let options = ExerciseOptions { count: 3, time: 600.0, halvings: 4, trial: 750 };
     let answered = exercise(&options, &mut |done| told.push(done)).unwrap();
     assert_eq!(told, [1, 2, 3, 4, 5]);
     let number = |cell: &str| cell.split_whitespace().next().unwrap().parse::<f64>().unwrap();
@@ -25,7 +25,8 @@ fn the_exercise_is_answered_with_numbers_near_their_theory() {
     }
     for row in &tables[4][0].rows {
         let limit = number(&row[2]);
-        assert!(number(&row[3]) < limit / 50.0, "{row:?}");
+        // A trial as short finds a slow growth late.
+        assert!(number(&row[3]) < limit / 15.0, "{row:?}");
         assert!(
             (number(&row[4]) / limit - 1.0).abs() < 0.04 && (number(&row[5]) / limit - 1.0).abs() < 0.04,
             "{row:?}"

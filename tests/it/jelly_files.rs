@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use wriggle::scenes;
+use wriggle::{creatures::JellyPlan, scenes};
 
 /// What is said about a jelly with these fields, and more of the creature behind it.
 fn error(body: &str, more: &str) -> String {
@@ -27,9 +27,10 @@ fn sizes_that_cannot_be_are_refused() {
     says(&error("size: (3, 3, -2)", ""), &["size", "(3, 3, -2)", "whole numbers from 1"]);
     says(&error("size: (3, 3)", ""), &["size"]);
     // Before anything is allocated, with what it would take.
+    let bytes = JellyPlan::BYTES_A_PARTICLE * 2_000_000_000;
     says(
         &error("size: (2000, 1000, 1000)", ""),
-        &["2000000000 particles", "1280000000000 bytes (1280.0 GB)", "at most 4000000 particles"],
+        &["2000000000 particles", &format!("{bytes} bytes ("), " GB)", "at most 4000000 particles"],
     );
     says(&error("size: (4294967295, 4294967295, 4294967295)", ""), &["bytes", "at most 4000000 particles"]);
 }

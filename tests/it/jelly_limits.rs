@@ -82,11 +82,12 @@ fn is_stable(plan: &JellyPlan, method: Method, damping: Option<MassDamping>, dt:
     }
     shake(&mut app, block, 1e-3);
     if plan.neighbours.faces.is_none() && plan.neighbours.cubes.is_none() {
-        // Nothing holds edges alone against shear: they tremble along one axis.
+        // Nothing holds edges alone against shear: their layers tremble as a whole.
         let mut particles = app.world_mut().get_mut::<Particles>(block).unwrap();
         for i in (0..particles.len() as u32).map(wriggle::body::ParticleId) {
             let particle = particles.get(i).unwrap();
-            let velocity = DVec3::Y * particle.velocity.y;
+            let layer = particle.position.y.round() as u32;
+            let velocity = DVec3::Y * 1e-3 * (f64::from(layer * 5 % 13) / 13.0 - 0.5);
             particles.set(i, wriggle::body::Particle { velocity, ..particle }).unwrap();
         }
     }

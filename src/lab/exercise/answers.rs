@@ -254,17 +254,17 @@ pub(super) fn verlet(options: &ExerciseOptions) -> Result<Answer, BodyError> {
             spectrum(&Block::new(plan.clone(), Method::StormerVerlet, DT)?.body).last().map_or(f64::NAN, |v| v.sqrt());
         let limit = 2.0 / omega;
         let mut row = vec![name.into(), fixed(omega, 3), fixed(limit, 3)];
-        let euler = largest_step(&plan, Method::ExplicitEuler, None, [0.0, 0.1 * limit], options.halvings)?;
+        let euler = largest_step(&plan, Method::ExplicitEuler, None, [0.0, 0.1 * limit], options)?;
         row.push(fixed(euler, 4));
         let near = [0.8 * limit, 1.1 * limit];
         for method in [Method::SemiImplicitEuler, Method::StormerVerlet] {
-            row.push(fixed(largest_step(&plan, method, None, near, options.halvings)?, 3));
+            row.push(fixed(largest_step(&plan, method, None, near, options)?, 3));
         }
         for loss in [0.01, 0.1, 0.5] {
             let theory = (4.0_f64 - 2.0 * loss).sqrt() / omega;
             let damping = Some(MassDamping::PerStep(loss));
             let near = [0.8 * theory, 1.1 * theory];
-            let found = largest_step(&plan, Method::DampedVerlet, damping, near, options.halvings)?;
+            let found = largest_step(&plan, Method::DampedVerlet, damping, near, options)?;
             row.push(format!("{found:.3} ({theory:.3})"));
         }
         limits.push(row);
@@ -287,9 +287,12 @@ pub(super) fn verlet(options: &ExerciseOptions) -> Result<Answer, BodyError> {
                 .into(),
         ],
         tables: vec![Table {
-            caption: "The largest stable step, by halving: a free block that trembles, 3000 steps and 400 units of time, no spring beyond four rest lengths. Theory in \
-                      brackets"
-                .into(),
+            caption: format!(
+                "The largest stable step, by halving: a free block that trembles, {} steps and {:.0} units of time, no spring beyond four rest lengths. Theory \
+                 in brackets",
+                options.trial,
+                f64::from(options.trial) * 400.0 / 3000.0
+            ),
             head: vec![
                 "springs of length",
                 "ω_max",

@@ -20,11 +20,13 @@ pub struct ExerciseOptions {
     pub time: f64,
     /// How often the interval of a largest step is halved.
     pub halvings: u32,
+    /// How many steps, or 400/3000 units of time for each, a block must stay whole for a step to be called stable.
+    pub trial: u32,
 }
 
 impl Default for ExerciseOptions {
     fn default() -> Self {
-        Self { count: 5, time: 2000.0, halvings: 9 }
+        Self { count: 5, time: 2000.0, halvings: 9, trial: 3000 }
     }
 }
 

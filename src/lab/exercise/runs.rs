@@ -5,6 +5,7 @@ use std::time::Instant;
 use bevy::math::DVec3;
 use faer::{Mat, Side};
 
+use super::ExerciseOptions;
 use crate::{
     body::{BodyError, Gravity, Ground, MassDamping, Neighbours, Particle, ParticleId},
     creatures::{Body, Creature, JellyPlan, NeighboursPlan, Pose, Rotation, SpringPlan},
@@ -78,7 +79,7 @@ impl Block {
         Self { damping: Some(damping), ..self }
     }
 
-    /// Lets its masses tremble a little, each its own way; along one axis where nothing holds it against shear.
+    /// Lets its masses tremble a little, each its own way; its layers as a whole where nothing holds it against shear.
     fn trembling(mut self, speed: f64) -> Result<Self, BodyError> {
         let one_axis = self
             .body
@@ -86,7 +87,9 @@ impl Block {
             .is_some_and(|(lattice, _)| !lattice.joins(Neighbours::Faces) && !lattice.joins(Neighbours::Cubes));
         let ways = if one_axis { DVec3::Y } else { DVec3::ONE };
         for i in 0..self.body.particles.len() as u32 {
-            let wobble = |prime: u32, modulus: u32| f64::from(i * prime % modulus) / f64::from(modulus) - 0.5;
+            let layer = self.body.particles.position(ParticleId(i)).map_or(0, |place| place.y.round() as u32);
+            let seed = if one_axis { layer } else { i };
+            let wobble = |prime: u32, modulus: u32| f64::from(seed * prime % modulus) / f64::from(modulus) - 0.5;
             let velocity = DVec3::new(wobble(7, 11), wobble(5, 13), wobble(3, 17)) * ways * speed;
             if let Some(particle) = self.body.particles.get(ParticleId(i)) {
                 self.body.particles.set(ParticleId(i), Particle { velocity, ..particle })?;
@@ -177,9 +180,15 @@ impl Block {
     }
 }
 
-/// Whether a free block that trembles stays whole for 3000 steps and 400 units of time.
-fn is_stable(plan: &JellyPlan, method: Method, damping: Option<MassDamping>, dt: f64) -> Result<bool, BodyError> {
-    let steps = 3000.max((400.0 / dt) as u64);
+/// Whether a free block that trembles stays whole for as many steps, and for 400 units of time if these are 3000.
+fn is_stable(
+    plan: &JellyPlan,
+    method: Method,
+    damping: Option<MassDamping>,
+    dt: f64,
+    trial: u32,
+) -> Result<bool, BodyError> {
+    let steps = u64::from(trial).max((f64::from(trial) * 400.0 / 3000.0 / dt) as u64);
     let block = Block { damping, ..Block::new(plan.clone(), method, dt)? };
     let mut block = block.trembling(1e-3)?;
     for _ in 0..20 {
@@ -191,17 +200,17 @@ fn is_stable(plan: &JellyPlan, method: Method, damping: Option<MassDamping>, dt:
     Ok(true)
 }
 
-/// The largest stable step, by halving the interval from 0 to so much.
+/// The largest stable step in an interval, by halving it.
 pub(super) fn largest_step(
     plan: &JellyPlan,
     method: Method,
     damping: Option<MassDamping>,
     [mut low, mut high]: [f64; 2],
-    halvings: u32,
+    options: &ExerciseOptions,
 ) -> Result<f64, BodyError> {
-    for _ in 0..halvings {
+    for _ in 0..options.halvings {
         let middle = 0.5 * (low + high);
-        if is_stable(plan, method, damping, middle)? { low = middle } else { high = middle }
+        if is_stable(plan, method, damping, middle, options.trial)? { low = middle } else { high = middle }
     }
     Ok(low)
 }

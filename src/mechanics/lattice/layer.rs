@@ -1,5 +1,7 @@
 //! One layer of a block, laid out for the inner loop.
 
+use super::tasks::KickDrift;
+
 /// A layer of the grid: an array for each coordinate, with room for neighbours that are not there on either side.
 #[derive(Clone, Debug)]
 pub(super) struct Layer {
@@ -38,10 +40,41 @@ impl Layer {
         }
     }
 
-    /// The positions of its masses.
+    /// Kicks its masses, which stand where they are to feel the forces, and lets them drift on. What comes to be below a floor is put back on it and loses what of
+    /// its velocity leads down.
     #[inline(always)]
-    pub(super) fn position(&self, count: usize) -> [&[f64]; 3] {
-        self.position.each_ref().map(|x| &x[self.pad..self.pad + count])
+    pub(super) fn kick(&mut self, rule: KickDrift, inverse_mass: &[f64], gravity: f64, floor: bool) {
+        let KickDrift { dt, after, rate, kept, .. } = rule;
+        let (from, count) = (self.pad, inverse_mass.len());
+        let Self { position, velocity, forward, back, .. } = self;
+        for axis in 0..3 {
+            let x = &mut position[axis][from..from + count];
+            let v = &mut velocity[axis][from..from + count];
+            let (f, b) = (&forward[axis][from..from + count], &back[axis][from..from + count]);
+            let gravity = if axis == 1 { gravity } else { 0.0 };
+            for i in 0..count {
+                // What is pinned has no weight, and no velocity that a damping could take.
+                let weight = if inverse_mass[i] > 0.0 { gravity } else { 0.0 };
+                let a = (f[i] + b[i]) * inverse_mass[i] - weight;
+                v[i] = v[i] * kept + (a - rate * v[i]) * dt;
+                x[i] += v[i] * after;
+            }
+        }
+        if floor {
+            let (y, v) = (&mut position[1][from..from + count], &mut velocity[1][from..from + count]);
+            for i in 0..count {
+                let below = inverse_mass[i] > 0.0 && y[i] < 0.0;
+                v[i] = if below && v[i] < 0.0 { 0.0 } else { v[i] };
+                y[i] = if below { 0.0 } else { y[i] };
+            }
+        }
+    }
+
+    /// Writes where its masses are and how they move.
+    #[inline(always)]
+    pub(super) fn write(&self, position: &mut [[f64; 3]], velocity: &mut [[f64; 3]]) {
+        gather(&self.position, self.pad, position);
+        gather(&self.velocity, self.pad, velocity);
     }
 
     /// Gives the force on each of its masses to `work`.
@@ -64,5 +97,15 @@ fn deal(vectors: &[[f64; 3]], columns: &mut [Vec<f64>; 3], pad: usize) {
         x[i] = vectors[i][0];
         y[i] = vectors[i][1];
         z[i] = vectors[i][2];
+    }
+}
+
+/// Gathers vectors from an array for each coordinate.
+#[inline(always)]
+fn gather(columns: &[Vec<f64>; 3], pad: usize, vectors: &mut [[f64; 3]]) {
+    let count = vectors.len();
+    let [x, y, z] = columns.each_ref().map(|column| &column[pad..pad + count]);
+    for i in 0..count {
+        vectors[i] = [x[i], y[i], z[i]];
     }
 }

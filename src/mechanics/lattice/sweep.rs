@@ -28,7 +28,7 @@ pub(super) trait Task: Send {
     fn read(&self, into: &mut Layer, layer: usize, masses: Range<usize>, ask: Ask);
 
     /// Uses the forces on a layer of the slab. All layers before it have been used, and the next one has been read.
-    fn write(&mut self, from: &Layer, masses: Range<usize>);
+    fn write(&mut self, from: &mut Layer, masses: Range<usize>);
 }
 
 /// Some layers of a block.

@@ -23,13 +23,11 @@ impl Task for Accelerate<'_> {
     }
 
     #[inline(always)]
-    fn write(&mut self, from: &Layer, masses: Range<usize>) {
+    fn write(&mut self, from: &mut Layer, masses: Range<usize>) {
         let first = self.start * masses.len();
         let own = &mut self.acceleration[masses.start - first..masses.end - first];
         let inverse_mass = &self.inverse_mass[masses];
-        from.each_force(own.len(), |i, force| {
-            own[i] = accelerated(force, inverse_mass[i], self.gravity);
-        });
+        from.each_force(own.len(), |i, force| own[i] = accelerated(force, inverse_mass[i], self.gravity));
     }
 }
 
@@ -83,32 +81,11 @@ impl Task for Move<'_> {
     }
 
     #[inline(always)]
-    fn write(&mut self, from: &Layer, masses: Range<usize>) {
+    fn write(&mut self, from: &mut Layer, masses: Range<usize>) {
         let first = self.start * masses.len();
         let own = masses.start - first..masses.end - first;
-        let (position, velocity) = (&mut self.position[own.clone()], &mut self.velocity[own]);
-        let inverse_mass = &self.inverse_mass[masses];
-        let count = position.len();
-        let KickDrift { dt, after, rate, kept, .. } = self.rule;
-        let [x0, x1, x2] = from.position(count);
-        from.each_force(count, |i, force| {
-            let light = inverse_mass[i];
-            let a = accelerated(force, light, self.gravity);
-            let middle = [x0[i], x1[i], x2[i]];
-            let (mut x, mut v) = ([0.0; 3], [0.0; 3]);
-            for axis in 0..3 {
-                let old = velocity[i][axis];
-                // What is pinned has no velocity that a damping could take.
-                v[axis] = old * kept + (a[axis] - rate * old) * dt;
-                x[axis] = middle[axis] + v[axis] * after;
-            }
-            if self.floor {
-                let below = light > 0.0 && x[1] < 0.0;
-                v[1] = if below && v[1] < 0.0 { 0.0 } else { v[1] };
-                x[1] = if below { 0.0 } else { x[1] };
-            }
-            (position[i], velocity[i]) = (x, v);
-        });
+        from.kick(self.rule, &self.inverse_mass[masses], self.gravity, self.floor);
+        from.write(&mut self.position[own.clone()], &mut self.velocity[own]);
     }
 }
 
@@ -124,7 +101,7 @@ impl Task for Measure<'_> {
     }
 
     #[inline(always)]
-    fn write(&mut self, _: &Layer, _: Range<usize>) {}
+    fn write(&mut self, _: &mut Layer, _: Range<usize>) {}
 }
 
 /// What a force and gravity accelerate a mass with; nothing that is pinned.
