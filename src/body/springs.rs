@@ -1,5 +1,7 @@
 //! The springs of a body.
 
+use core::ops::Range;
+
 use bevy::{ecs::prelude::*, prelude::ReflectComponent, reflect::Reflect};
 
 use super::{BodyError, ParticleId, Particles, Requirement, check};
@@ -54,15 +56,32 @@ impl Spring {
     }
 }
 
-/// The springs of a body, one array a field.
+/// What springs in a row have in common.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Reflect)]
+struct Law {
+    stiffness: f64,
+    damping: f64,
+    rest_length: f64,
+}
+
+/// Springs in a row that have the same law, up to the one before `end`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Reflect)]
+struct Run {
+    end: usize,
+    law: Law,
+}
+
+/// The springs of a body: the ends of each, and stiffness, damping and rest length of each run of springs that have the same. A lattice of a million
+/// springs has as many runs as kinds of neighbours.
 #[derive(Clone, Component, Debug, Default, PartialEq, Reflect)]
 #[reflect(Component)]
 pub struct Springs {
     particles: usize,
     ends: Vec<[ParticleId; 2]>,
-    stiffness: Vec<f64>,
-    damping: Vec<f64>,
-    rest_length: Vec<f64>,
+    /// Whether a spring was given other ends than it was made with: what knows the springs by their order then knows them no more.
+    rewired: bool,
+    /// In order; no two beside each other have the same law.
+    runs: Vec<Run>,
 }
 
 impl Springs {
@@ -76,9 +95,7 @@ impl Springs {
         for (index, spring) in springs.into_iter().enumerate() {
             spring.check(index, all.particles)?;
             all.ends.push(spring.ends);
-            all.stiffness.push(spring.stiffness);
-            all.damping.push(spring.damping);
-            all.rest_length.push(spring.rest_length);
+            all.push_law(index + 1, law(&spring));
         }
         Ok(all)
     }
@@ -96,12 +113,7 @@ impl Springs {
     /// The spring as plain data, or nothing where there is no such spring.
     pub fn get(&self, id: SpringId) -> Option<Spring> {
         let i = id.index();
-        (i < self.len()).then(|| Spring {
-            ends: self.ends[i],
-            stiffness: self.stiffness[i],
-            damping: self.damping[i],
-            rest_length: self.rest_length[i],
-        })
+        (i < self.len()).then(|| spring(self.ends[i], self.runs[self.run_of(i)].law))
     }
 
     /// Replaces a spring.
@@ -119,20 +131,18 @@ impl Springs {
             });
         }
         spring.check(i, self.particles)?;
+        self.rewired |= self.ends[i] != spring.ends;
         self.ends[i] = spring.ends;
-        self.stiffness[i] = spring.stiffness;
-        self.damping[i] = spring.damping;
-        self.rest_length[i] = spring.rest_length;
+        self.set_law(i, law(&spring));
         Ok(())
     }
 
     /// All springs in order, as plain data.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = Spring> + '_ {
-        (0..self.len()).map(|i| Spring {
-            ends: self.ends[i],
-            stiffness: self.stiffness[i],
-            damping: self.damping[i],
-            rest_length: self.rest_length[i],
+        let mut run = 0;
+        (0..self.len()).map(move |i| {
+            run += usize::from(self.runs[run].end == i);
+            spring(self.ends[i], self.runs[run].law)
         })
     }
 
@@ -140,4 +150,61 @@ impl Springs {
     pub fn ends(&self) -> &[[ParticleId; 2]] {
         &self.ends
     }
+
+    /// The first of these springs, if all of them have its stiffness, damping and rest length; nothing where they differ, there is none, or a spring was given other
+    /// ends since all were made.
+    pub fn uniform(&self, range: Range<usize>) -> Option<Spring> {
+        let last =
+            range.end.checked_sub(1).filter(|&last| last >= range.start && last < self.len() && !self.rewired)?;
+        let run = self.run_of(range.start);
+        (last < self.runs[run].end).then(|| spring(self.ends[range.start], self.runs[run].law))
+    }
+
+    /// The run that a spring is in.
+    fn run_of(&self, spring: usize) -> usize {
+        self.runs.partition_point(|run| run.end <= spring)
+    }
+
+    /// Adds a law to the end.
+    fn push_law(&mut self, end: usize, law: Law) {
+        match self.runs.last_mut() {
+            Some(last) if last.law == law => last.end = end,
+            _ => self.runs.push(Run { end, law }),
+        }
+    }
+
+    fn set_law(&mut self, spring: usize, law: Law) {
+        let at = self.run_of(spring);
+        if self.runs[at].law == law {
+            return;
+        }
+        // The run falls into what is before the spring, the spring, and what is after it; those that turn out alike are one.
+        let from = at.saturating_sub(1);
+        let upto = (at + 2).min(self.runs.len());
+        let mut parts = self.runs[from..upto].to_vec();
+        let old = parts[at - from];
+        let whole = [(spring, old.law), (spring + 1, law), (old.end, old.law)].map(|(end, law)| Run { end, law });
+        parts.splice(at - from..=at - from, whole);
+        let mut start = if from == 0 { 0 } else { self.runs[from - 1].end };
+        let mut joined: Vec<Run> = Vec::with_capacity(parts.len());
+        for part in parts {
+            if part.end == start {
+                continue;
+            }
+            start = part.end;
+            match joined.last_mut() {
+                Some(last) if last.law == part.law => last.end = part.end,
+                _ => joined.push(part),
+            }
+        }
+        self.runs.splice(from..upto, joined);
+    }
+}
+
+fn law(spring: &Spring) -> Law {
+    Law { stiffness: spring.stiffness, damping: spring.damping, rest_length: spring.rest_length }
+}
+
+fn spring(ends: [ParticleId; 2], law: Law) -> Spring {
+    Spring { ends, stiffness: law.stiffness, damping: law.damping, rest_length: law.rest_length }
 }

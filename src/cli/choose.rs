@@ -7,7 +7,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::{CliError, Outcome, list::write_table};
 use crate::{
-    lab::{Cache, Candidate, Choice, Problem, Search, choose as find},
+    lab::{Cache, Candidate, Choice, Problem, Search, Truth, Unit, choose as find},
     mechanics::integrators::StickRule,
     scenes,
 };
@@ -29,8 +29,8 @@ pub(super) fn choose(arguments: &ChooseArguments) -> Result<Outcome, CliError> {
     let problem = Problem::of(&scene)?;
     let bar = progress();
     bar.set_message("reference");
-    let reference = Cache::of_platform().reference(&problem)?;
-    let choice = find(&problem, &reference, Search::Frontier, &mut |done, total, what| {
+    let truth = Truth::of(&problem, &Cache::of_platform())?;
+    let choice = find(&problem, &truth, Search::Frontier, &mut |done, total, what| {
         bar.set_length(total as u64);
         bar.set_position(done as u64);
         bar.set_message(what.to_owned());
@@ -47,12 +47,25 @@ pub(super) fn choose(arguments: &ChooseArguments) -> Result<Outcome, CliError> {
 }
 
 fn print(out: &mut impl Write, found: &Choice) -> io::Result<()> {
-    writeln!(out, "{}: an error of at most {:.4e} until t = {}", found.scene, found.budget, found.duration)?;
+    let Choice { scene, budget, duration, .. } = found;
+    match found.unit {
+        Unit::Length => writeln!(out, "{scene}: an error of at most {budget:.4e} until t = {duration}")?,
+        Unit::PartOfSpeed => {
+            let sure = found.reference_error;
+            writeln!(
+                out,
+                "{scene}: speeds of gaits within {} % at t = {duration}, known to {:.2} %",
+                100.0 * budget,
+                100.0 * sure
+            )?;
+        }
+    }
     let mut rows = vec![vec!["  frontier".to_owned()]];
     rows.push(["  method", "friction", "dt", "cost", "error", "of budget"].map(String::from).to_vec());
     rows.extend(found.frontier.iter().map(|candidate| row(candidate, found)));
-    rows.push(vec!["  the scene's own setting, and the document's".into()]);
-    rows.extend([&found.own, &found.document].map(|candidate| row(candidate, found)));
+    let document = if found.document.is_some() { ", and the document's" } else { "" };
+    rows.push(vec![format!("  the scene's own setting{document}")]);
+    rows.extend(core::iter::once(&found.own).chain(&found.document).map(|candidate| row(candidate, found)));
     rows.push(vec!["  cheapest within the budget".into()]);
     rows.push(row(&found.choice, found));
     write_table(out, &rows)?;

@@ -7,7 +7,7 @@ use clap::Args;
 use super::{CliError, Headless, Outcome};
 use crate::{
     creatures::{
-        Plan, RoadForm,
+        JellyPlan, Plan, RoadForm,
         library::{self, CREATURE, ROAD, SCENE, Source},
     },
     mechanics::integrators::Method,
@@ -62,6 +62,7 @@ fn names() -> Vec<Vec<String>> {
                 Plan::Raw(raw) => format!("{} particles, {} springs", raw.particles.len(), raw.springs.len()),
                 Plan::GardenWorm(_) => "garden worm".into(),
                 Plan::Strand(strand) => format!("strand of {} segments", strand.segments),
+                Plan::Jelly(JellyPlan { size: (x, y, z), .. }) => format!("jelly of {x} × {y} × {z}"),
                 Plan::Inchworm(_) => "inchworm: a muscle with two legs, for a road".into(),
                 Plan::Roller(_) => "roller: two wheels and four beams, for a road".into(),
                 Plan::Composed(composed) => {

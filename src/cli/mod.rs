@@ -6,6 +6,7 @@ use clap::{Parser, Subcommand};
 use thiserror::Error;
 
 use crate::{
+    body::BodyError,
     creatures::FileError,
     lab::{GalleryError, LabError},
     scenes::parameters::ParameterError,
@@ -13,6 +14,7 @@ use crate::{
 
 mod chart;
 mod choose;
+mod exercise;
 mod headless;
 mod limits;
 mod list;
@@ -53,6 +55,8 @@ enum Command {
     Chart(chart::ChartArguments),
     /// Print how large a step may be, for every body and method
     Limits(limits::LimitsArguments),
+    /// Answer the exercise "Mass-Spring-Damper model" with runs made on the spot
+    Exercise(exercise::ExerciseArguments),
 }
 
 /// How a command ended.
@@ -79,6 +83,9 @@ pub enum CliError {
     /// Charts cannot be kept.
     #[error(transparent)]
     Gallery(#[from] GalleryError),
+    /// A body cannot be built.
+    #[error(transparent)]
+    Body(#[from] BodyError),
     /// Flags contradict the scene or each other.
     #[error("{0}")]
     Usage(String),
@@ -115,6 +122,7 @@ pub fn main() -> ExitCode {
         Some(Command::Choose(arguments)) => choose::choose(&arguments),
         Some(Command::Chart(arguments)) => chart::chart(&arguments),
         Some(Command::Limits(arguments)) => limits::print(&arguments),
+        Some(Command::Exercise(arguments)) => exercise::exercise(&arguments),
     };
     match outcome {
         Ok(Outcome::Done) => ExitCode::SUCCESS,

@@ -8,8 +8,8 @@ use serde::Serialize;
 
 use super::Headless;
 use crate::{
-    body::{Bonds, Particles, Springs},
-    mechanics::metrics::{Gait, GaitMetrics, SAMPLES_A_CYCLE},
+    body::{Bonds, Lattice, Particles, Springs, Tearing},
+    mechanics::metrics::{BlockShape, Gait, GaitMetrics, SAMPLES_A_CYCLE},
     physics::{Frozen, body_parts},
 };
 
@@ -69,6 +69,12 @@ struct BodyReport {
     /// Its gait over its last cycles, where it is a strand with waves.
     #[serde(skip_serializing_if = "Option::is_none")]
     gait: Option<GaitMetrics>,
+    /// Its shape at the end, where it is a block on a grid.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    block: Option<BlockShape>,
+    /// How many of its springs are torn, where they can tear.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    torn: Option<usize>,
 }
 
 impl Report {
@@ -87,6 +93,8 @@ impl Report {
                 distance: 0.0,
                 status: "running",
                 gait: None,
+                block: None,
+                torn: None,
             }
         });
         let gaits = run.bodies().map(|(_, body, _)| Gait::new(&body_parts(body)?));
@@ -132,6 +140,8 @@ impl Report {
         for ((report, gait), (_, body, particles)) in self.bodies.iter_mut().zip(&self.gaits).zip(run.bodies()) {
             report.center = particles.center().to_array();
             report.distance = DVec3::from(report.start).distance(particles.center());
+            report.block = body.get::<Lattice>().and_then(|&lattice| BlockShape::measure(particles, lattice));
+            report.torn = body.get::<Tearing>().map(Tearing::count);
             report.gait = gait.as_ref().and_then(Gait::measure);
             report.status = if body.contains::<Frozen>() { "frozen" } else { "running" };
         }
@@ -153,6 +163,12 @@ impl fmt::Display for Report {
             )?;
             if let Some(gait) = &body.gait {
                 write!(f, ", {:.3} of its length a cycle", gait.body_lengths)?;
+            }
+            if let Some(block) = &body.block {
+                write!(f, ", shape error {:.4}, {} cells inside out", block.shape_error, block.inverted)?;
+            }
+            if let Some(torn) = body.torn {
+                write!(f, ", {torn} springs torn")?;
             }
         }
         match self.bodies.len().saturating_sub(SHOWN) {

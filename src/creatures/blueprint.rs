@@ -4,7 +4,9 @@ use std::borrow::Cow;
 
 use serde::{Deserialize, Deserializer, Serialize, de};
 
-use super::{Composed, GardenWorm, Inchworm, Look, MOST_PARTICLES, Roller, SixSkin, StrandPlan, numbers, parse};
+use super::{
+    Composed, GardenWorm, Inchworm, JellyPlan, Look, MOST_PARTICLES, Roller, SixSkin, StrandPlan, numbers, parse,
+};
 use crate::body::{Ground, MassDamping, Wave};
 
 /// A creature: what `*.creature.ron` holds.
@@ -25,6 +27,9 @@ pub struct Creature {
     /// Damping in proportion to mass, as `Rate(c)` or as the `PerStep(λ)` of damped Verlet. Left out: none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub damping: Option<MassDamping>,
+    /// The strain l/L − 1 at which its springs tear for good, above zero. Left out: they hold.
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "numbers::optional_positive")]
+    pub tear: Option<f64>,
     /// The ground that it stands on where its file is run alone; a scene has its own. Left out: none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ground: Option<Ground>,
@@ -59,6 +64,8 @@ pub enum Plan {
     GardenWorm(GardenWorm),
     /// A row of cubes with travelling waves.
     Strand(StrandPlan),
+    /// A block on a cubic grid.
+    Jelly(JellyPlan),
     /// Sixty particles that are one muscle, and two legs.
     Inchworm(Inchworm),
     /// An axle with two wheels and four beams.
@@ -74,7 +81,7 @@ impl Plan {
             Self::Inchworm(inchworm) => Some(Cow::Owned(inchworm.composed())),
             Self::Roller(roller) => Some(Cow::Owned(roller.composed())),
             Self::Composed(composed) => Some(Cow::Borrowed(composed)),
-            Self::Raw(_) | Self::GardenWorm(_) | Self::Strand(_) => None,
+            Self::Raw(_) | Self::GardenWorm(_) | Self::Strand(_) | Self::Jelly(_) => None,
         }
     }
 }
@@ -205,6 +212,7 @@ impl Creature {
             Plan::Raw(raw) => raw.particles.len(),
             Plan::GardenWorm(_) => GardenWorm::PARTICLES,
             Plan::Strand(strand) => strand.particles(),
+            Plan::Jelly(jelly) => jelly.particles(),
             Plan::Inchworm(_) => Inchworm::PARTICLES,
             Plan::Roller(_) => Roller::PARTICLES,
             Plan::Composed(composed) => composed.particles(),
@@ -214,7 +222,9 @@ impl Creature {
     /// How it wants to be drawn.
     pub fn look(&self) -> Look {
         match &self.body {
-            Plan::Raw(_) => Look::Plain,
+            // What is torn has no skin.
+            Plan::Jelly(_) if self.tear.is_none() => Look::Jelly,
+            Plan::Raw(_) | Plan::Jelly(_) => Look::Plain,
             Plan::Strand(strand) => Look::Strand(strand.skin),
             Plan::GardenWorm(_) => Look::GardenWorm,
             Plan::Inchworm(_) => Look::SixMatrix(SixSkin::Organic),
@@ -227,7 +237,17 @@ impl Creature {
 impl From<Plan> for Creature {
     /// A creature with what its kind needs and nothing else.
     fn from(body: Plan) -> Self {
-        Self { version: 1, body, friction: None, coulomb: None, damping: None, ground: None, road: None, gravity: None }
+        Self {
+            version: 1,
+            body,
+            friction: None,
+            coulomb: None,
+            damping: None,
+            tear: None,
+            ground: None,
+            road: None,
+            gravity: None,
+        }
     }
 }
 
@@ -264,6 +284,12 @@ impl From<Composed> for Creature {
 impl From<StrandPlan> for Creature {
     fn from(strand: StrandPlan) -> Self {
         Plan::Strand(strand).into()
+    }
+}
+
+impl From<JellyPlan> for Creature {
+    fn from(jelly: JellyPlan) -> Self {
+        Plan::Jelly(jelly).into()
     }
 }
 

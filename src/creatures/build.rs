@@ -7,10 +7,12 @@ use bevy::{
     math::DVec3,
 };
 
-use super::{Composed, Coulomb, Creature, Friction, GardenWorm, Look, Plan, RawBody, RawParticle, SixBody, StrandPlan};
+use super::{
+    Attitude, Composed, Coulomb, Creature, Friction, GardenWorm, Look, Plan, RawBody, RawParticle, SixBody, StrandPlan,
+};
 use crate::body::{
-    BodyError, Coefficients, CoulombFriction, MassDamping, Muscle, Muscles, Particle, ParticleId, Particles,
-    SpineFriction, Spring, SpringId, Springs, Strand, TravelingWaves,
+    BodyError, Coefficients, CoulombFriction, Lattice, MassDamping, Muscle, Muscles, Particle, ParticleId, Particles,
+    SpineFriction, Spring, SpringId, Springs, Strand, Tearing, TravelingWaves,
 };
 
 /// Where a creature is put, and which way it looks.
@@ -63,12 +65,16 @@ pub struct Body {
     pub strand: Option<Strand>,
     /// The waves that travel along the lattice, if any do.
     pub waves: Option<TravelingWaves>,
+    /// The block on a grid that it is, and how it starts, if it is one.
+    pub block: Option<(Lattice, Attitude)>,
     /// Friction along its spine, if it feels any.
     pub friction: Option<SpineFriction>,
     /// Dry friction along its spine, if it feels any.
     pub coulomb: Option<CoulombFriction>,
     /// Its damping by what surrounds it, if any.
     pub damping: Option<MassDamping>,
+    /// When its springs tear, if they do.
+    pub tearing: Option<Tearing>,
     /// How it wants to be drawn.
     pub look: Look,
 }
@@ -92,6 +98,9 @@ impl EntityCommand for Body {
         if let Some(waves) = self.waves {
             entity.insert(waves);
         }
+        if let Some(block) = self.block {
+            entity.insert(block);
+        }
         if let Some(friction) = self.friction {
             entity.insert(friction);
         }
@@ -100,6 +109,9 @@ impl EntityCommand for Body {
         }
         if let Some(damping) = self.damping {
             entity.insert(damping);
+        }
+        if let Some(tearing) = self.tearing {
+            entity.insert(tearing);
         }
     }
 }
@@ -114,6 +126,12 @@ impl Creature {
         if let Some(composed) = self.body.composed() {
             return self.six_body(&composed, pose);
         }
+        let damping = match self.damping {
+            None => None,
+            Some(MassDamping::Rate(rate)) => Some(MassDamping::rate(rate)?),
+            Some(MassDamping::PerStep(part)) => Some(MassDamping::per_step(part)?),
+        };
+        let tearing = self.tear.map(Tearing::new).transpose()?;
         let (raw, kind) = match &self.body {
             Plan::Raw(raw) => {
                 (Cow::Borrowed(raw), Friction { drag: Some(0.0), brake: Some(0.0), ..Friction::default() })
@@ -126,6 +144,12 @@ impl Creature {
                 let brake = Some(StrandPlan::BRAKE);
                 (Cow::Owned(strand.raw()), Friction { drag: Some(0.0), brake, ..Friction::default() })
             }
+            Plan::Jelly(jelly) => {
+                if let Some(field) = self.friction.map(|_| "friction").or_else(|| self.coulomb.map(|_| "coulomb")) {
+                    return Err(no_spine(field));
+                }
+                return Ok(Body { damping, tearing, look: self.look(), ..jelly.body(pose)? });
+            }
             // Built above.
             Plan::Inchworm(_) | Plan::Roller(_) | Plan::Composed(_) => Default::default(),
         };
@@ -133,6 +157,10 @@ impl Creature {
         let springs = springs(&raw, &particles)?;
         let muscles = muscles(&raw, &springs)?;
         let (strand, waves) = match &self.body {
+            Plan::Strand(_) if tearing.is_some() => {
+                let problem = "the springs of a strand cannot tear; leave it out".into();
+                return Err(BodyError::Inconsistent { path: "tear".into(), problem });
+            }
             Plan::Strand(plan) => (Some(plan.strand(&springs)?), Some(plan.waves()?)),
             _ => (None, None),
         };
@@ -152,22 +180,20 @@ impl Creature {
             SpineFriction::new(raw.spine.iter().copied().map(ParticleId), &particles)?;
         }
         let coulomb = self.coulomb.map(|coulomb| coulomb_friction(&raw, coulomb, &particles)).transpose()?;
-        let damping = match self.damping {
-            None => None,
-            Some(MassDamping::Rate(rate)) => Some(MassDamping::rate(rate)?),
-            Some(MassDamping::PerStep(part)) => Some(MassDamping::per_step(part)?),
-        };
+        let look = self.look();
         Ok(Body {
             particles,
             springs,
-            six: None,
             muscles,
             strand,
             waves,
+            block: None,
+            six: None,
             friction,
             coulomb,
             damping,
-            look: self.look(),
+            tearing,
+            look,
         })
     }
 }
@@ -179,6 +205,7 @@ impl Creature {
             ("friction", self.friction.is_some()),
             ("coulomb", self.coulomb.is_some()),
             ("damping", self.damping.is_some()),
+            ("tear", self.tear.is_some()),
         ];
         if let Some((field, _)) = unused.iter().find(|(_, given)| *given) {
             let problem =
@@ -196,7 +223,9 @@ impl Creature {
             waves: None,
             friction: None,
             coulomb: None,
+            block: None,
             damping: None,
+            tearing: None,
             look: self.look(),
         })
     }
@@ -275,12 +304,13 @@ fn coulomb_friction(raw: &RawBody, coulomb: Coulomb, particles: &Particles) -> R
 /// The spine of a body, along which `field` works.
 fn spine<'a>(raw: &'a RawBody, field: &str) -> Result<impl Iterator<Item = ParticleId> + use<'a>, BodyError> {
     if raw.spine.is_empty() {
-        return Err(BodyError::Inconsistent {
-            path: field.into(),
-            problem:
-                "works along a spine of particles, and this body has none; give `spine: [tail, …, head]` in a raw body"
-                    .into(),
-        });
+        return Err(no_spine(field));
     }
     Ok(raw.spine.iter().copied().map(ParticleId))
+}
+
+fn no_spine(field: &str) -> BodyError {
+    let problem =
+        "works along a spine of particles, and this body has none; give `spine: [tail, …, head]` in a raw body";
+    BodyError::Inconsistent { path: field.into(), problem: problem.into() }
 }

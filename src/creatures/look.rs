@@ -13,6 +13,8 @@ pub enum Look {
     GardenWorm,
     /// A smooth skin over the sections of a [`Strand`](crate::body::Strand).
     Strand(Skin),
+    /// A smooth translucent skin over the outer masses of a [`Lattice`](crate::body::Lattice).
+    Jelly,
     /// A creature of the six-matrix particle system.
     SixMatrix(SixSkin),
     /// Balls and rods.

@@ -1,6 +1,6 @@
 //! Creatures as data: a blueprint, read from a file, becomes the components of a body. Needs no Bevy schedule.
 //!
-//! A [`Creature`] is a kind with parameters ([`GardenWorm`], [`StrandPlan`]) or raw lists of particles and springs ([`RawBody`]); or it belongs to the
+//! A [`Creature`] is a kind with parameters ([`GardenWorm`], [`StrandPlan`], [`JellyPlan`]) or raw lists of particles and springs ([`RawBody`]); or it belongs to the
 //! six-matrix particle system as a kind ([`Inchworm`], [`Roller`]) or written out ([`Composed`]), and then moves on a road ([`RoadFile`]). [`Creature::body`]
 //! places it in the world and gives a [`Body`], which is put on an entity as a command:
 //!
@@ -18,6 +18,7 @@ mod blueprint;
 mod build;
 mod error;
 mod garden_worm;
+mod jelly;
 pub mod library;
 mod look;
 pub(crate) mod numbers;
@@ -29,6 +30,7 @@ pub use blueprint::{Coulomb, Creature, Friction, Plan, RawBody, RawMuscle, RawPa
 pub use build::{Body, Pose};
 pub use error::FileError;
 pub use garden_worm::GardenWorm;
+pub use jelly::{Attitude, JellyPlan, NeighboursPlan, Rotation, SpringPlan};
 pub use look::{Look, Skin};
 pub(crate) use parse::{CurrentVersion, options, parse, version};
 pub use six::{

@@ -57,10 +57,18 @@ fn read<T: DeserializeOwned>(text: &str, file: &str) -> Result<T, FileError> {
 /// The path of a field as messages about bodies and parameter paths write it.
 fn field_name(path: &str) -> String {
     let path = path.trim_end_matches(['?', '.']);
-    let path = ["body.Raw.", "body.GardenWorm.", "body.Strand.", "body.Inchworm.", "body.Roller.", "body.Composed."]
-        .into_iter()
-        .find_map(|kind| path.strip_prefix(kind))
-        .unwrap_or(path);
+    let path = [
+        "body.Raw.",
+        "body.GardenWorm.",
+        "body.Strand.",
+        "body.Jelly.",
+        "body.Inchworm.",
+        "body.Roller.",
+        "body.Composed.",
+    ]
+    .into_iter()
+    .find_map(|kind| path.strip_prefix(kind))
+    .unwrap_or(path);
     if path.is_empty() { String::new() } else { format!("{path}: ") }
 }
 

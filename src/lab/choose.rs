@@ -9,7 +9,7 @@ use serde::Serialize;
 use crate::mechanics::integrators::{Method, StickRule};
 
 use super::{
-    LabError, Problem, Reference, Setting,
+    LabError, Problem, Reference, Setting, Truth,
     run::{errors, stepping, steps_to, stick_matters},
     sweep::{DOCUMENT, work},
 };
@@ -19,7 +19,7 @@ use super::{
 pub struct Candidate {
     /// The method and its step.
     pub setting: Setting,
-    /// The largest error of any position over the step and 0.9 and 0.8 of it, in lengths; `None` where one of them blows up.
+    /// The largest error over the step and 0.9 and 0.8 of it, in the unit of the budget; `None` where one of them blows up.
     pub error: Option<f64>,
     /// What a run of the problem costs, in evaluations of the forces of a body by RK4.
     pub cost: f64,
@@ -32,18 +32,29 @@ pub struct Choice {
     pub scene: String,
     /// The simulated time of a run.
     pub duration: f64,
-    /// The error that the scene can afford (lengths).
+    /// The error that the scene can afford.
     pub budget: f64,
+    /// What an error is.
+    pub unit: Unit,
     /// The cheapest candidate within the budget.
     pub choice: Candidate,
     /// The scene's own setting, judged in the same way.
     pub own: Candidate,
-    /// The document's setting, judged in the same way.
-    pub document: Candidate,
+    /// The document's setting, judged in the same way; nothing where gaits are judged, of which that document does not speak.
+    pub document: Option<Candidate>,
     /// The candidates that no other beats in both error and cost, from the cheapest up.
     pub frontier: Vec<Candidate>,
-    /// How far the reference is from what confirms it (lengths).
+    /// How far the reference is from what confirms it.
     pub reference_error: f64,
+}
+
+/// What an error is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub enum Unit {
+    /// The distance of a particle from where it should be.
+    Length,
+    /// A part of the speed of a gait.
+    PartOfSpeed,
 }
 
 /// How far to look.
@@ -87,16 +98,20 @@ fn order(a: &Candidate, b: &Candidate) -> core::cmp::Ordering {
 /// If nothing that was tried is within the budget.
 pub fn choose(
     problem: &Problem,
-    reference: &Reference,
+    truth: &Truth,
     search: Search,
     progress: &mut dyn FnMut(usize, usize, &str),
 ) -> Result<Choice, LabError> {
-    let judge = Judge { problem, reference, evaluation: seconds_an_evaluation(problem) };
-    let mut methods = Method::ALL;
+    let (unit, budget) = match problem.gait_speed {
+        Some(part) => (Unit::PartOfSpeed, part),
+        None => (Unit::Length, problem.budget),
+    };
+    let judge = Judge { problem, truth, budget, evaluation: seconds_an_evaluation(problem) };
+    let mut methods: Vec<_> = Method::ALL.into_iter().filter(|method| truth.may_judge(*method)).collect();
     // Those that are likely to be cheap come first, so that the others need not be followed far.
     methods.sort_by_key(|method| core::cmp::Reverse(method.about().order));
     let mut candidates = Vec::new();
-    for (done, method) in methods.into_iter().enumerate() {
+    for (done, &method) in methods.iter().enumerate() {
         progress(done, methods.len(), method.name());
         for stick in StickRule::ALL {
             if stick == StickRule::InStages || stick_matters(problem, method, stick) {
@@ -106,17 +121,18 @@ pub fn choose(
         }
     }
     progress(methods.len(), methods.len(), "done");
-    let choice = cheapest(&candidates, problem.budget)
-        .ok_or_else(|| LabError::NothingFits { scene: problem.name.clone(), budget: problem.budget })?;
+    let choice =
+        cheapest(&candidates, budget).ok_or_else(|| LabError::NothingFits { scene: problem.name.clone(), budget })?;
     Ok(Choice {
         scene: problem.name.clone(),
         duration: problem.duration,
-        budget: problem.budget,
+        budget,
+        unit,
         choice,
         own: judge.candidate(problem.setting),
-        document: judge.candidate(DOCUMENT),
+        document: (unit == Unit::Length).then(|| judge.candidate(DOCUMENT)),
         frontier: frontier(&candidates),
-        reference_error: reference.error(),
+        reference_error: truth.error(),
     })
 }
 
@@ -137,7 +153,7 @@ fn follow(
     const HOPELESS: usize = 8;
     /// Beaten by far: a cheaper candidate has so much less of an error.
     const FAR: f64 = 4.0;
-    let budget = judge.problem.budget;
+    let budget = judge.budget;
     let mut beaten = 0;
     for &dt in steps {
         let setting = Setting { method, stick, dt };
@@ -161,7 +177,8 @@ fn follow(
         }
         let enough = match search {
             Search::Cheapest => budget,
-            Search::Frontier => LITTLE * budget,
+            // Nothing can be said of errors that the truth itself may have.
+            Search::Frontier => judge.truth.error().max(LITTLE * budget),
         };
         if candidate.error.is_some_and(|error| error <= enough) {
             return;
@@ -193,23 +210,28 @@ fn rounded_down(dt: f64) -> f64 {
 
 /// The largest error of any position over the step and 0.9 and 0.8 of it; `None` where one of them blows up.
 pub(super) fn worst_error(problem: &Problem, reference: &Reference, setting: Setting) -> Option<f64> {
-    [1.0, 0.9, 0.8].into_iter().try_fold(0.0, |worst, part| {
-        let errors = errors(problem, reference, Setting { dt: part * setting.dt, ..setting })?;
-        Some(f64::max(worst, errors.largest))
-    })
+    worst(setting, |setting| Some(errors(problem, reference, setting)?.largest))
+}
+
+/// The largest error over a step and 0.9 and 0.8 of it; `None` where one of them blows up.
+fn worst(setting: Setting, error: impl Fn(Setting) -> Option<f64>) -> Option<f64> {
+    [1.0, 0.9, 0.8]
+        .into_iter()
+        .try_fold(0.0, |worst, part| Some(f64::max(worst, error(Setting { dt: part * setting.dt, ..setting })?)))
 }
 
 /// What candidates are judged with.
 struct Judge<'a> {
     problem: &'a Problem,
-    reference: &'a Reference,
+    truth: &'a Truth,
+    budget: f64,
     /// How many seconds RK4 takes for an evaluation.
     evaluation: f64,
 }
 
 impl Judge<'_> {
     fn candidate(&self, setting: Setting) -> Candidate {
-        let error = worst_error(self.problem, self.reference, setting);
+        let error = worst(setting, |setting| self.truth.error_of(self.problem, setting));
         Candidate { setting, error, cost: self.cost(setting) }
     }
 

@@ -4,6 +4,8 @@ mod cache;
 pub mod chart;
 mod choose;
 mod error;
+pub mod exercise;
+mod gait;
 mod gallery;
 mod hash;
 pub mod limits;
@@ -17,10 +19,12 @@ mod run;
 mod stiffness;
 mod sweep;
 mod table;
+mod truth;
 
 pub use cache::Cache;
-pub use choose::{Candidate, Choice, Search, cheapest, choose, frontier};
+pub use choose::{Candidate, Choice, Search, Unit, cheapest, choose, frontier};
 pub use error::LabError;
+pub use gait::GaitSpeeds;
 pub use gallery::{Gallery, GalleryError, study_stem};
 pub use page::page;
 pub use partial::Partial;
@@ -34,3 +38,4 @@ pub use stiffness::{
 };
 pub use sweep::{SweepOptions, resumed_sweep, sweep, work_precision};
 pub use table::{COLUMNS, csv};
+pub use truth::Truth;

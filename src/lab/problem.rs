@@ -4,8 +4,8 @@ use bevy::{ecs::prelude::*, prelude::Name};
 
 use crate::{
     body::{
-        CoulombFriction, Gravity, Ground, Guidance, MassDamping, Muscles, Particles, SpineFriction, Springs, Strand,
-        TravelingWaves,
+        CoulombFriction, Gravity, Ground, Guidance, Lattice, MassDamping, Muscles, Particles, SpineFriction, Springs,
+        Strand, Tearing, TravelingWaves,
     },
     creatures::FileError,
     mechanics::{
@@ -38,6 +38,10 @@ pub struct ProblemBody {
     pub muscles: Option<Muscles>,
     /// The lattice that it is, if it is one.
     pub strand: Option<Strand>,
+    /// The block on a grid that it is, if it is one.
+    pub lattice: Option<Lattice>,
+    /// When its springs tear, if they do.
+    pub tearing: Option<Tearing>,
     /// The waves that travel along the lattice, if any do.
     pub waves: Option<TravelingWaves>,
     /// Its friction, if it has any.
@@ -69,6 +73,8 @@ impl ProblemBody {
             springs: entity.get::<Springs>()?.clone(),
             muscles: entity.get::<Muscles>().filter(|muscles| !muscles.is_empty()).cloned(),
             strand: entity.get::<Strand>().copied(),
+            lattice: entity.get::<Lattice>().copied(),
+            tearing: entity.get::<Tearing>().cloned(),
             waves: entity.get::<TravelingWaves>().cloned(),
             friction: entity.get::<SpineFriction>().cloned(),
             coulomb: entity.get::<CoulombFriction>().cloned(),
@@ -86,6 +92,9 @@ impl ProblemBody {
             springs: &self.springs,
             muscles: self.muscles.as_ref(),
             strand: self.strand,
+            lattice: self.lattice,
+            pull: None,
+            tearing: self.tearing.as_ref(),
             waves: self.waves.as_ref(),
             guidance: Guidance::default(),
             friction: self.friction.as_ref(),
@@ -101,6 +110,13 @@ impl ProblemBody {
     /// The largest stable step of a method in the pose that the body starts in.
     pub fn stability_limit(&self, method: Method, stick: StickRule) -> f64 {
         self.parts(method, stick).stability_limit(0.0)
+    }
+
+    /// The longest period of a muscle or a wave; nothing where it has none.
+    pub fn period(&self) -> Option<f64> {
+        let muscles = self.muscles.iter().flat_map(Muscles::iter).map(|muscle| muscle.period);
+        let waves = self.waves.as_ref().and_then(TravelingWaves::longest_period);
+        muscles.chain(waves).reduce(f64::max)
     }
 
     fn hash(&self, hash: &mut Fnv) {
@@ -138,6 +154,7 @@ impl ProblemBody {
         // Nor does it know strands and grounds.
         hash.whole(u64::from(self.strand.is_some()));
         hash.whole(u64::from(self.ground.is_some()));
+        hash.number(self.tearing.as_ref().map_or(f64::INFINITY, Tearing::strain));
         hash.number(self.mass_damping.map_or(0.0, |damping| damping.rate_at(1.0)));
     }
 }
@@ -220,9 +237,7 @@ impl Problem {
     }
 
     fn set_duration(&mut self) {
-        let muscles = self.bodies.iter().filter_map(|body| body.muscles.as_ref()).flat_map(Muscles::iter);
-        let waves = self.bodies.iter().filter_map(|body| body.waves.as_ref()?.longest_period());
-        self.period = muscles.map(|muscle| muscle.period).chain(waves).reduce(f64::max);
+        self.period = self.bodies.iter().filter_map(ProblemBody::period).reduce(f64::max);
         self.duration = self.period.map_or(WITHOUT_MUSCLES, |period| CYCLES * period);
     }
 

@@ -63,7 +63,7 @@ fn step_body<const D: usize>(body: &ProblemBody, setting: Setting, steps: u64) -
     let mut run = Run::<D>::new(body, setting, 0.0);
     let started = Instant::now();
     // Whether it blew up is known from the run that was compared.
-    let _ = run.advance(0, steps);
+    let _ = run.advance(steps);
     (started.elapsed().as_secs_f64(), run.model.evaluations(0))
 }
 
@@ -92,7 +92,7 @@ pub(super) fn stick_matters(problem: &Problem, method: Method, stick: StickRule)
 /// The bits of all positions after some steps.
 fn end_of<const D: usize>(body: &ProblemBody, setting: Setting, steps: u64) -> Vec<u64> {
     let mut run = Run::<D>::new(body, setting, 0.0);
-    let _ = run.advance(0, steps);
+    let _ = run.advance(steps);
     run.state.position.iter().flatten().map(|value| value.to_bits()).collect()
 }
 
@@ -138,23 +138,9 @@ fn compare<'r, const D: usize>(
     exact: impl Fn(usize) -> &'r [DVec3],
     sum: &mut Sum,
 ) -> Option<()> {
-    let mut run = Run::<D>::new(body, setting, 0.0);
-    let (mut done, mut positions) = (0, Vec::new());
+    let (mut run, mut positions) = (Run::<D>::new(body, setting, 0.0), Vec::new());
     for (sample, &time) in times.iter().enumerate() {
-        let steps = (time / setting.dt + ROUNDING).floor() as u64;
-        if steps > done {
-            run.advance(done, steps - done)?;
-            done = steps;
-        }
-        let start = steps as f64 * setting.dt;
-        if time - start > ROUNDING * setting.dt {
-            let mut part = Run::<D>::new(body, Setting { dt: time - start, ..setting }, start);
-            part.state.clone_from(&run.state);
-            part.advance(0, 1)?;
-            part.positions(body, &mut positions);
-        } else {
-            run.positions(body, &mut positions);
-        }
+        run.positions_at(body, time, &mut positions)?;
         sum.add(&positions, exact(sample));
     }
     let centers = [center(body, &positions), center(body, exact(times.len() - 1))];
@@ -173,28 +159,52 @@ pub(super) fn center(body: &ProblemBody, positions: &[DVec3]) -> DVec3 {
 }
 
 /// A body on its way.
-struct Run<const D: usize> {
+pub(super) struct Run<const D: usize> {
     model: Model<f64, D>,
     state: State<f64, D>,
     setting: Setting,
     timeline: Timeline,
+    /// How many steps it has taken.
+    done: u64,
 }
 
 impl<const D: usize> Run<D> {
-    fn new(body: &ProblemBody, setting: Setting, start: f64) -> Self {
+    /// A body before its first step, which begins at `start`.
+    pub(super) fn new(body: &ProblemBody, setting: Setting, start: f64) -> Self {
         let mut state = State::new(body.particles.len());
         state.set_lane(0, &body.particles);
         let model = Model::new(&body.parts(setting.method, setting.stick), [], setting.dt);
-        Self { model, state, setting, timeline: Timeline { dt: setting.dt, base_step: 0, base_time: start } }
+        Self { model, state, setting, timeline: Timeline { dt: setting.dt, base_step: 0, base_time: start }, done: 0 }
     }
 
     /// Takes steps. `None` where the body has blown up or a step was refused.
-    fn advance(&mut self, first: u64, steps: u64) -> Option<()> {
-        let (model, state, timeline) = (&mut self.model, &mut self.state, self.timeline);
+    fn advance(&mut self, steps: u64) -> Option<()> {
+        let (model, state, timeline, first) = (&mut self.model, &mut self.state, self.timeline, self.done);
         Advance { model, state, method: self.setting.method, timeline, first, steps }.run();
+        self.done += steps;
         let failed =
             self.model.has_exploded(0) || self.model.has_refused(0) || self.model.explosion(&self.state, 0).is_some();
         (!failed).then_some(())
+    }
+
+    /// Goes on to a time that is not before its last step and tells where the particles are then. Where no step ends, one shorter step is taken that the
+    /// run itself does not see. `None` where the body has blown up or a step was refused.
+    pub(super) fn positions_at(&mut self, body: &ProblemBody, time: f64, positions: &mut Vec<DVec3>) -> Option<()> {
+        let setting = self.setting;
+        let steps = (time / setting.dt + ROUNDING).floor() as u64;
+        if steps > self.done {
+            self.advance(steps - self.done)?;
+        }
+        let start = steps as f64 * setting.dt;
+        if time - start > ROUNDING * setting.dt {
+            let mut part = Self::new(body, Setting { dt: time - start, ..setting }, start);
+            part.state.clone_from(&self.state);
+            part.advance(1)?;
+            part.positions(body, positions);
+        } else {
+            self.positions(body, positions);
+        }
+        Some(())
     }
 
     /// Where the particles are; what an axis leaves out is as it was at the start.

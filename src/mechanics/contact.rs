@@ -7,10 +7,13 @@ use super::{
 };
 
 impl<R: Real, const D: usize> Model<R, D> {
-    /// Remembers where a step begins; contact with a terrain asks for it.
+    /// Remembers where a step begins, for contact with a terrain, and tears the springs that are too long there.
     #[inline(always)]
     pub fn begin_step(&mut self, state: &State<R, D>) {
         self.contact.begin_step(state);
+        if self.tearing.is_some() {
+            self.tear(state);
+        }
     }
 
     /// Puts what came to be below the ground back on it and takes the velocity that leads into it.

@@ -2,7 +2,7 @@
 
 use bevy::math::DVec3;
 
-use crate::body::Particles;
+use crate::body::{Particles, SpringId};
 
 use super::{BodyParts, rest_lengths};
 
@@ -11,7 +11,7 @@ pub fn kinetic_energy(particles: &Particles) -> f64 {
     particles.velocities().zip(particles.masses()).map(|(v, m)| 0.5 * m * v.length_squared()).sum()
 }
 
-/// Elastic energy at `time`, ½ Σ k (l − L)².
+/// Elastic energy at `time`, ½ Σ k (l − L)² over the springs that are not torn.
 pub fn elastic_energy(body: &BodyParts<'_>, time: f64) -> f64 {
     let positions: Vec<_> = body.particles.positions().collect();
     let energy = |(spring, rest): (crate::body::Spring, f64)| {
@@ -19,7 +19,9 @@ pub fn elastic_energy(body: &BodyParts<'_>, time: f64) -> f64 {
         let stretch = a.distance(b) - rest;
         0.5 * spring.stiffness * stretch * stretch
     };
-    body.springs.iter().zip(rest_lengths(body, time)).map(energy).sum()
+    let torn = |i: usize| body.tearing.is_some_and(|tearing| tearing.is_torn(SpringId(i as u32)));
+    let whole = body.springs.iter().zip(rest_lengths(body, time)).enumerate().filter(|(i, _)| !torn(*i));
+    whole.map(|(_, spring)| energy(spring)).sum()
 }
 
 /// Momentum, Σ m v.

@@ -64,8 +64,21 @@ impl<R: Real, const D: usize> Model<R, D> {
     /// time, and gravity. A spring of no length has no direction and pulls nowhere.
     #[inline(always)]
     pub fn forces(&mut self, time: f64, position: &[[R; D]], velocity: &[[R; D]], acceleration: &mut [[R; D]]) {
+        self.own_forces(time, position, velocity, acceleration);
+        if self.pull.is_some() {
+            self.pull(position, velocity, acceleration);
+        }
+    }
+
+    /// The same without the pull of a hand.
+    #[inline(always)]
+    fn own_forces(&mut self, time: f64, position: &[[R; D]], velocity: &[[R; D]], acceleration: &mut [[R; D]]) {
         let zero = R::splat(0.0);
         self.evaluations += R::splat(1.0);
+        if self.lattice.is_some() {
+            self.lattice_forces(position, velocity, acceleration);
+            return;
+        }
         self.drive_muscles(time, position);
         if self.strand.is_some() {
             self.strand_forces(position, velocity, acceleration);
@@ -132,6 +145,9 @@ pub fn rest_length(springs: &Springs, muscles: Option<&Muscles>, spring: SpringI
 
 /// The rest lengths of all springs of a body at `time`, as its muscles and waves drive them where it is.
 pub fn rest_lengths(body: &BodyParts<'_>, time: f64) -> Vec<f64> {
+    if body.muscles.is_none() && body.strand.is_none() {
+        return body.springs.iter().map(|spring| spring.rest_length).collect();
+    }
     // Rest lengths do not depend on the step.
     let mut model = Model::<f64, 3>::new(body, [], 1.0);
     let mut state = State::new(body.particles.len());

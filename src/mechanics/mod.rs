@@ -15,13 +15,16 @@ mod forces;
 mod friction;
 mod ground;
 pub mod integrators;
+mod lattice;
 pub mod metrics;
 mod model;
+mod pull;
 mod quad;
 mod real;
 pub mod six_matrix;
 mod stability;
 mod strand;
+mod tearing;
 mod wave;
 
 pub use advance::{Advance, Timeline};

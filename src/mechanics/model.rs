@@ -1,8 +1,8 @@
 //! A body, or several of equal topology side by side, in the layout that steps work on.
 
 use crate::body::{
-    CoulombFriction, Epoch, Gravity, Ground, Guidance, MassDamping, Muscle, Muscles, ParticleId, Particles,
-    SpineFriction, Spring, Springs, Strand, TravelingWaves, Wave, WaveKind,
+    CoulombFriction, Epoch, Gravity, Ground, Guidance, Lattice, MassDamping, Muscle, Muscles, ParticleId, Particles,
+    Pull, SpineFriction, Spring, Springs, Strand, Tearing, TravelingWaves, Wave, WaveKind,
 };
 
 use super::{
@@ -11,7 +11,10 @@ use super::{
     forces::direction,
     ground::Contact,
     integrators::{Method, StickRule},
+    lattice::LatticeRows,
+    pull::PullRow,
     strand::StrandRows,
+    tearing::TearingRows,
 };
 
 /// Components of one body, borrowed.
@@ -25,6 +28,12 @@ pub struct BodyParts<'a> {
     pub muscles: Option<&'a Muscles>,
     /// The lattice that it is, if it is one.
     pub strand: Option<Strand>,
+    /// The block on a grid that it is, if it is one.
+    pub lattice: Option<Lattice>,
+    /// Where a hand pulls at it, if one does.
+    pub pull: Option<Pull>,
+    /// When its springs tear, if they do.
+    pub tearing: Option<&'a Tearing>,
     /// The waves that travel along the lattice, if any do.
     pub waves: Option<&'a TravelingWaves>,
     /// How its waves are guided.
@@ -58,7 +67,10 @@ impl BodyParts<'_> {
 
     /// Whether it gains from being stepped side by side with bodies of equal topology.
     pub fn side_by_side(&self) -> bool {
-        self.method.side_by_side() && !(self.stick == StickRule::Located && self.method.locates())
+        self.method.side_by_side()
+            && self.pull.is_none()
+            && !self.is_regular()
+            && !(self.stick == StickRule::Located && self.method.locates())
     }
 
     /// Whether both bodies can be stepped side by side: the same graph of springs, muscles and spine, and the same rules; numbers may differ.
@@ -76,7 +88,8 @@ impl BodyParts<'_> {
             && self.particles.len() == other.particles.len()
             && self.springs.ends() == other.springs.ends()
             && driven(self.muscles).eq(driven(other.muscles))
-            && self.strand == other.strand
+            && (self.tearing.is_some(), self.pull.is_some()) == (other.tearing.is_some(), other.pull.is_some())
+            && (self.strand, self.lattice) == (other.strand, other.lattice)
             && self.waves.is_some() == other.waves.is_some()
             && traveling(self.waves).eq(traveling(other.waves))
             && rule(self.friction) == rule(other.friction)
@@ -260,6 +273,10 @@ pub struct Model<R, const D: usize> {
     pub(super) springs: Vec<SpringRow<R>>,
     pub(super) muscles: Vec<MuscleRow<R>>,
     pub(super) strand: Option<StrandRows<R>>,
+    /// A block that [is regular](BodyParts::is_regular); its springs are not among `springs`.
+    pub(super) lattice: Option<LatticeRows>,
+    pub(super) tearing: Option<TearingRows<R>>,
+    pub(super) pull: Option<PullRow>,
     pub(super) spine: Vec<SpineRow>,
     /// Where the sections of the spine are more than single particles.
     pub(super) sections: Option<Sections>,
@@ -322,12 +339,18 @@ impl<R: Real, const D: usize> Model<R, D> {
             friction => (None, SpineRow::along(friction.map_or(&[], SpineFriction::spine)).collect()),
         };
         let contact = Contact::new(body.ground, dt);
+        // One dimension has no grid, and bodies side by side share no slabs.
+        let lattice = if D == 3 && R::LANES == 1 { LatticeRows::of(body) } else { None };
+        let listed = if lattice.is_some() { 0 } else { body.springs.len() };
         Self {
             dt,
             inverse_mass: vec![zero; body.particles.len()],
-            springs: body.springs.iter().map(spring).collect(),
+            springs: body.springs.iter().take(listed).map(spring).collect(),
             muscles: body.muscles.into_iter().flat_map(Muscles::iter).map(MuscleRow::idle).collect(),
             strand: body.strand.map(|strand| StrandRows::idle(strand, body.waves)),
+            lattice,
+            pull: PullRow::of(body),
+            tearing: body.tearing.map(|_| TearingRows::idle(body.springs.len())),
             spine,
             sections,
             friction: body.friction.map(|friction| FrictionRow {
@@ -345,7 +368,7 @@ impl<R: Real, const D: usize> Model<R, D> {
             contact,
             damping: body.mass_damping.map(|_| DampingRow { rate: zero, loss: zero }),
             stick: body.stick,
-            rest: vec![zero; body.springs.len()],
+            rest: vec![zero; listed],
             overstretched: zero,
             evaluations: zero,
             refused: zero,
@@ -365,6 +388,7 @@ impl<R: Real, const D: usize> Model<R, D> {
             row.rest_length.set_lane(lane, spring.rest_length);
             row.longest.set_lane(lane, LONGEST_STRETCH * spring.rest_length);
         }
+        self.set_tearing_lane(lane, body);
         let muscles = body.muscles.into_iter().flat_map(|muscles| muscles.iter().zip(muscles.epochs()));
         for (row, (muscle, &epoch)) in self.muscles.iter_mut().zip(muscles) {
             row.set_lane(lane, muscle, epoch);
@@ -401,6 +425,9 @@ impl<R: Real, const D: usize> Model<R, D> {
     /// Notes springs that are too long, or of no finite length.
     #[inline(always)]
     pub(super) fn note_lengths(&mut self, state: &State<R, D>) {
+        if self.lattice.is_some() {
+            self.note_lattice(state);
+        }
         for spring in &self.springs {
             let [a, b] = spring.ends.map(|end| state.position[end as usize]);
             self.overstretched = direction(a, b).0.if_below(spring.longest, self.overstretched, R::splat(1.0));
@@ -436,6 +463,9 @@ impl<R: Real, const D: usize> Model<R, D> {
                 })
                 .collect(),
             strand: self.strand.as_ref().map(|strand| strand.lane(lane)),
+            lattice: self.lattice.clone(),
+            pull: self.pull,
+            tearing: self.tearing.as_ref().map(|rows| rows.lane(lane)),
             spine: self.spine.clone(),
             sections: self.sections.clone(),
             friction: self.friction.as_ref().map(|row| FrictionRow {
@@ -489,13 +519,23 @@ impl<R: Real, const D: usize> Model<R, D> {
     }
 
     fn exploded_spring(&self, state: &State<R, D>, lane: usize) -> Option<Explosion> {
-        let spring = self.springs.iter().position(|spring| {
-            let [a, b] = spring.ends.map(|end| state.position[end as usize]);
+        let too_long = |ends: [usize; 2], longest: f64| {
+            let [a, b] = ends.map(|end| state.position[end]);
             let square: f64 = (0..D).map(|axis| b[axis].lane(lane) - a[axis].lane(lane)).map(|d| d * d).sum();
             let length = square.sqrt();
-            length.is_nan() || length >= spring.longest.lane(lane)
-        })?;
-        let ends = self.springs[spring].ends.map(|end| end as usize);
+            length.is_nan() || length >= longest
+        };
+        let (spring, ends) = match &self.lattice {
+            Some(rows) => {
+                let found = rows.springs().enumerate().find(|&(_, (ends, longest))| too_long(ends, longest));
+                found.map(|(spring, (ends, _))| (spring, ends))
+            }
+            None => {
+                let rows = self.springs.iter().map(|row| (row.ends.map(|end| end as usize), row.longest.lane(lane)));
+                let found = rows.enumerate().find(|&(_, (ends, longest))| too_long(ends, longest));
+                found.map(|(spring, (ends, _))| (spring, ends))
+            }
+        }?;
         let speed = |end: usize| state.velocity[end].iter().map(|v| v.lane(lane)).map(|v| v * v).sum::<f64>();
         let particle = if speed(ends[1]) > speed(ends[0]) { ends[1] } else { ends[0] };
         Some(Explosion { particle, spring: Some(spring) })

@@ -46,6 +46,12 @@ pub trait Real:
 
     /// Whether any lane is below `bound`: for leaving out work whose result no lane would take.
     fn any_below(self, bound: Self) -> bool;
+
+    /// Numbers that stand alone as what they are; nothing of several side by side.
+    fn alone(values: &[Self]) -> Option<&[f64]>;
+
+    /// The same, to be changed.
+    fn alone_mut(values: &mut [Self]) -> Option<&mut [f64]>;
 }
 
 impl Real for f64 {
@@ -85,6 +91,14 @@ impl Real for f64 {
     fn any_below(self, bound: Self) -> bool {
         self < bound
     }
+
+    fn alone(values: &[Self]) -> Option<&[f64]> {
+        Some(values)
+    }
+
+    fn alone_mut(values: &mut [Self]) -> Option<&mut [f64]> {
+        Some(values)
+    }
 }
 
 /// `W` numbers side by side. Plain arrays: the compiler turns whole-array operations into the widest vectors of the processor that the code
@@ -92,6 +106,20 @@ impl Real for f64 {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(align(64))]
 pub struct Lanes<const W: usize>([f64; W]);
+
+impl<const W: usize> From<[f64; W]> for Lanes<W> {
+    #[inline(always)]
+    fn from(values: [f64; W]) -> Self {
+        Self(values)
+    }
+}
+
+impl<const W: usize> From<Lanes<W>> for [f64; W] {
+    #[inline(always)]
+    fn from(lanes: Lanes<W>) -> Self {
+        lanes.0
+    }
+}
 
 macro_rules! lanewise {
     ($trait:ident, $method:ident, $assign_trait:ident, $assign_method:ident, $op:tt) => {
@@ -183,5 +211,13 @@ impl<const W: usize> Real for Lanes<W> {
     #[inline(always)]
     fn any_below(self, bound: Self) -> bool {
         self.0.iter().zip(&bound.0).any(|(value, bound)| value < bound)
+    }
+
+    fn alone(_: &[Self]) -> Option<&[f64]> {
+        None
+    }
+
+    fn alone_mut(_: &mut [Self]) -> Option<&mut [f64]> {
+        None
     }
 }

@@ -159,7 +159,9 @@ fn lines(body: &BodyParts<'_>, time: f64) -> Vec<Line> {
             across: if length > 0.0 { spring.stiffness * (1.0 - rest / length) } else { spring.stiffness },
         }
     };
-    body.springs.iter().zip(rest_lengths(body, time)).map(line).collect()
+    let torn = |i: usize| body.tearing.is_some_and(|tearing| tearing.is_torn(SpringId(i as u32)));
+    let whole = body.springs.iter().zip(rest_lengths(body, time)).enumerate().filter(|(i, _)| !torn(*i));
+    whole.map(|(_, spring)| line(spring)).collect()
 }
 
 /// The least of what bounds each rate of a body that can move across its springs.
@@ -172,7 +174,8 @@ fn rates_in_space(body: &BodyParts<'_>, lines: &[Line], across: bool) -> Rates {
         })
     };
     let node = most(node_rates(body));
-    let safe = if across {
+    // Of a block in space, the directional bound takes longest to find and is never the least.
+    let safe = if across || body.lattice.is_some() {
         node
     } else {
         let directional = most(directional_rates(body));

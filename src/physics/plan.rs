@@ -11,8 +11,8 @@ use bevy::{
 
 use crate::{
     body::{
-        CoulombFriction, Gravity, Ground, MassDamping, Muscles, Particles, Rules, SpineFriction, Springs, Strand,
-        TravelingWaves,
+        CoulombFriction, Gravity, Ground, Lattice, MassDamping, Muscles, Particles, Pull, Rules, SpineFriction,
+        Springs, Strand, Tearing, TravelingWaves,
     },
     mechanics::{
         BodyParts,
@@ -28,6 +28,8 @@ pub(super) struct Parts {
     springs: &'static Springs,
     muscles: Option<&'static Muscles>,
     strand: Option<&'static Strand>,
+    lattice: Option<&'static Lattice>,
+    pull: Option<&'static Pull>,
     waves: Option<&'static TravelingWaves>,
     friction: Option<&'static SpineFriction>,
     coulomb: Option<&'static CoulombFriction>,
@@ -40,12 +42,20 @@ pub(super) struct Parts {
 
 impl PartsItem<'_, '_> {
     /// Borrows the body for mechanics.
-    pub(super) fn body<'a>(&'a self, particles: &'a Particles, steer: Option<&Steer>) -> BodyParts<'a> {
+    pub(super) fn body<'a>(
+        &'a self,
+        particles: &'a Particles,
+        tearing: Option<&'a Tearing>,
+        steer: Option<&Steer>,
+    ) -> BodyParts<'a> {
         BodyParts {
             particles,
             springs: self.springs,
             muscles: self.muscles,
             strand: self.strand.copied(),
+            lattice: self.lattice.copied(),
+            pull: self.pull.copied(),
+            tearing,
             waves: self.waves,
             guidance: steer.map(Steer::guidance).unwrap_or_default(),
             friction: self.friction,
@@ -67,6 +77,9 @@ pub fn body_parts(entity: EntityRef<'_>) -> Option<BodyParts<'_>> {
         springs: entity.get()?,
         muscles: entity.get(),
         strand: entity.get().copied(),
+        lattice: entity.get().copied(),
+        pull: entity.get().copied(),
+        tearing: entity.get(),
         waves: entity.get(),
         guidance: entity.get().map(Steer::guidance).unwrap_or_default(),
         friction: entity.get(),
@@ -115,6 +128,8 @@ impl Plan {
 /// The limit of a body that can move across its springs changes with its pose, and is worked out again after so many steps: it costs as much as some
 /// thirty of them.
 const STEPS_PER_LIMIT: u64 = 512;
+/// For a large body, which steps faster than its limit is found, after one step for so many springs.
+const SPRINGS_A_STEP: u64 = 64;
 
 type Changes = Or<(
     Added<Plan>,
@@ -125,6 +140,8 @@ type Changes = Or<(
     Changed<CoulombFriction>,
     Changed<Muscles>,
     Changed<Strand>,
+    Changed<Lattice>,
+    Changed<Tearing>,
     Changed<TravelingWaves>,
     Changed<Gravity>,
     Changed<Ground>,
@@ -134,12 +151,12 @@ type Changes = Or<(
 )>;
 
 /// What is read of a body to plan it.
-type Planned = (&'static Particles, Parts, Option<&'static Steer>, &'static mut Plan);
+type Planned = (&'static Particles, Parts, Option<&'static Tearing>, Option<&'static Steer>, &'static mut Plan);
 
 /// Plans every body that was changed.
 pub(super) fn plan(clock: Res<Clock>, mut bodies: Query<Planned, (Changes, Without<Rules>)>) {
-    for (particles, parts, steer, mut plan) in &mut bodies {
-        let body = parts.body(particles, steer);
+    for (particles, parts, tearing, steer, mut plan) in &mut bodies {
+        let body = parts.body(particles, tearing, steer);
         plan.misfit = misfit(&body);
         if plan.misfit.is_some() {
             continue;
@@ -150,14 +167,22 @@ pub(super) fn plan(clock: Res<Clock>, mut bodies: Query<Planned, (Changes, Witho
 }
 
 /// What is read of a body to watch its limit.
-type Watched = (Option<&'static Name>, &'static Particles, Parts, Option<&'static Steer>, &'static mut Plan);
+type Watched = (
+    Option<&'static Name>,
+    &'static Particles,
+    Parts,
+    Option<&'static Tearing>,
+    Option<&'static Steer>,
+    &'static mut Plan,
+);
 
 /// Works out the limit again of every body whose pose may have changed it, and warns where dt is above a limit.
 pub(super) fn watch_limit(clock: Res<Clock>, mut bodies: Query<Watched, (Without<Frozen>, Without<Rules>)>) {
-    for (name, particles, parts, steer, mut plan) in &mut bodies {
-        let body = parts.body(particles, steer);
+    for (name, particles, parts, tearing, steer, mut plan) in &mut bodies {
+        let body = parts.body(particles, tearing, steer);
         // A restart counts from 0 again.
-        let aged = clock.step().checked_sub(plan.limited_at).is_none_or(|steps| steps >= STEPS_PER_LIMIT);
+        let between = STEPS_PER_LIMIT.max(body.springs.len() as u64 / SPRINGS_A_STEP);
+        let aged = clock.step().checked_sub(plan.limited_at).is_none_or(|steps| steps >= between);
         if aged && plan.misfit.is_none() && !body.on_axis() {
             plan.limit(&body, &clock);
         }
@@ -185,12 +210,13 @@ fn topology(body: &BodyParts<'_>) -> u64 {
     if let Some(friction) = body.friction {
         (friction.ratchet(), friction.width(), friction.spine()).hash(&mut hasher);
     }
-    body.strand.hash(&mut hasher);
+    (body.strand, body.lattice).hash(&mut hasher);
     for wave in body.waves.into_iter().flat_map(TravelingWaves::iter) {
         (wave.kind, wave.form).hash(&mut hasher);
     }
     body.coulomb.map(CoulombFriction::spine).hash(&mut hasher);
-    (body.ground.is_some(), body.gravity.is_some(), body.mass_damping.is_some()).hash(&mut hasher);
+    (body.tearing.is_some(), body.ground.is_some(), body.gravity.is_some(), body.mass_damping.is_some())
+        .hash(&mut hasher);
     hasher.finish()
 }
 
@@ -216,6 +242,15 @@ fn misfit(body: &BodyParts<'_>) -> Option<String> {
             "its strand was made for another body; this one has {particles} particles and {} springs",
             body.springs.len()
         ));
+    }
+    if body.lattice.is_some_and(|lattice| lattice.springs() != body.springs.len() || lattice.particles() != particles) {
+        return Some(format!(
+            "its lattice was made for another body; this one has {particles} particles and {} springs",
+            body.springs.len()
+        ));
+    }
+    if body.tearing.is_some() && (body.strand.is_some() || body.method == Method::ExactFlow) {
+        return Some("the springs of a strand, and those of a body that ExactFlow steps, cannot tear".into());
     }
     if body.waves.is_some() && body.strand.is_none() {
         return Some("its waves need a strand to travel along".into());

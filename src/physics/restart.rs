@@ -2,7 +2,7 @@
 
 use bevy::ecs::prelude::*;
 
-use crate::body::{Columns, Muscles, Particles, TravelingWaves};
+use crate::body::{Columns, Muscles, Particles, Tearing, TravelingWaves};
 
 use super::{Clock, Cost, Frozen, Previous, Steer, Trail, Work};
 
@@ -33,6 +33,7 @@ type Bodies<'w, 's> = Query<
         &'static mut Work,
         Option<&'static mut Muscles>,
         Option<&'static mut TravelingWaves>,
+        Option<&'static mut Tearing>,
         Option<&'static mut Steer>,
         Option<&'static mut Columns>,
         Option<&'static mut Trail>,
@@ -52,7 +53,9 @@ pub(super) fn restart(
     }
     clock.rewind();
     *cost = Cost::default();
-    for (body, mut particles, mut previous, start, mut work, muscles, waves, steer, columns, trail) in &mut bodies {
+    for (body, mut particles, mut previous, start, mut work, muscles, waves, tearing, steer, columns, trail) in
+        &mut bodies
+    {
         *work = Work::default();
         particles.set_state(&start.0);
         previous.position.clone_from(start.0.position_columns());
@@ -61,6 +64,9 @@ pub(super) fn restart(
         }
         if let Some(mut waves) = waves {
             waves.rewind();
+        }
+        if let Some(mut tearing) = tearing {
+            tearing.mend();
         }
         if let Some(mut steer) = steer {
             *steer = Steer::default();

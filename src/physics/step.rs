@@ -8,7 +8,7 @@ use core::ops::Range;
 use std::time::Instant;
 
 use crate::{
-    body::{ParticleId, Particles, Rules},
+    body::{ParticleId, Particles, Rules, Tearing},
     mechanics::{Advance, BodyParts, Lanes, Model, Real, State, Timeline},
 };
 
@@ -43,13 +43,21 @@ pub struct Work {
 }
 
 /// What the steps of a tick need of a body.
-type Bodies =
-    (&'static mut Particles, Parts, &'static Plan, &'static mut Verdict, &'static mut Work, Option<&'static mut Steer>);
+type Bodies = (
+    &'static mut Particles,
+    Parts,
+    Option<&'static mut Tearing>,
+    &'static Plan,
+    &'static mut Verdict,
+    &'static mut Work,
+    Option<&'static mut Steer>,
+);
 
 /// A body on its way through a tick.
 struct Item<'a> {
     particles: Mut<'a, Particles>,
     parts: PartsItem<'a, 'a>,
+    tearing: Option<Mut<'a, Tearing>>,
     plan: &'a Plan,
     verdict: Mut<'a, Verdict>,
     work: Mut<'a, Work>,
@@ -61,14 +69,22 @@ struct Item<'a> {
 
 impl Item<'_> {
     fn body(&self) -> BodyParts<'_> {
-        self.parts.body(&self.particles, self.steer.as_deref())
+        self.parts.body(&self.particles, self.tearing.as_deref(), self.steer.as_deref())
+    }
+
+    /// Takes what the model has come to, of the body in this lane.
+    fn take_torn<R: Real, const D: usize>(&mut self, model: &Model<R, D>, lane: usize) {
+        if let Some(tearing) = &mut self.tearing {
+            // The model knows it already.
+            tearing.bypass_change_detection().set_torn(model.torn(lane));
+        }
     }
 
     /// Lets a steered body look where it is, before this step. Gives back before which step it wants to look again.
     fn steer(&mut self, timeline: Timeline, step: u64) -> Option<u64> {
         // What it comes to is no change that a plan would have to follow.
         let steer = self.steer.as_mut()?.bypass_change_detection();
-        steer.look(&self.parts.body(&self.particles, None), timeline, step)
+        steer.look(&self.parts.body(&self.particles, None, None), timeline, step)
     }
 
     fn matches(&self, other: &Self) -> bool {
@@ -95,15 +111,15 @@ pub(super) fn step(
     let (timeline, range) = (clock.timeline(), clock.step()..clock.step() + steps);
     let mut items: Vec<_> = bodies
         .iter_mut()
-        .filter_map(|(particles, parts, plan, mut verdict, work, steer)| {
+        .filter_map(|(particles, parts, tearing, plan, mut verdict, work, steer)| {
             if let Some(reason) = plan.misfit.clone() {
                 let (step, time) = (range.start, timeline.time_at(range.start));
                 *verdict = Verdict(Some(Failure { step, time, particle: ParticleId(0), reason }));
                 return None;
             }
-            let body = parts.body(&particles, None);
+            let body = parts.body(&particles, None, None);
             let on_axis = body.on_axis();
-            Some(Item { particles, parts, plan, verdict, work, steer, on_axis, evaluations: 0 })
+            Some(Item { particles, parts, tearing, plan, verdict, work, steer, on_axis, evaluations: 0 })
         })
         .collect();
     items.sort_by_key(|item| (item.plan.topology, item.on_axis));
@@ -189,6 +205,7 @@ fn step_lanes<R: Real, const D: usize>(group: &mut [Item<'_>], timeline: Timelin
         } else {
             item.evaluations += model.evaluations(lane);
             state.write_lane(lane, item.particles.bypass_change_detection());
+            item.take_torn(&model, lane);
         }
     }
 }
@@ -219,8 +236,10 @@ fn retrace<const D: usize>(item: &mut Item<'_>, timeline: Timeline, steps: Range
         };
         let particle = ParticleId(particle as u32);
         good.write_lane(0, item.particles.bypass_change_detection());
+        item.take_torn(&model, 0);
         *item.verdict = Verdict(Some(Failure { step: step + 1, time: timeline.time_at(step + 1), particle, reason }));
         return;
     }
     state.write_lane(0, item.particles.bypass_change_detection());
+    item.take_torn(&model, 0);
 }

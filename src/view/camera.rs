@@ -3,7 +3,7 @@
 use bevy::{camera::SubCameraView, light::cluster::ClusterConfig, prelude::*, render::view::NoIndirectDrawing};
 use bevy_panorbit_camera::{PanOrbitCamera, PanOrbitCameraPlugin, PanOrbitCameraSystemSet, TrackpadBehavior};
 
-use super::{half::HalfResolution, help::typing, offscreen::OffscreenTarget, quality::Quality};
+use super::{drag::Held, half::HalfResolution, help::typing, offscreen::OffscreenTarget, quality::Quality};
 use crate::{
     creatures::Look,
     physics::Shown,
@@ -127,9 +127,14 @@ fn toggle(
     }
 }
 
-fn leave_to_panel(on_panel: Res<PointerOnPanel>, mut cameras: Query<&mut PanOrbitCamera, With<SceneCamera>>) {
+fn leave_to_panel(
+    on_panel: Res<PointerOnPanel>,
+    held: Option<Res<Held>>,
+    mut cameras: Query<&mut PanOrbitCamera, With<SceneCamera>>,
+) {
+    let drags = held.is_some_and(|held| held.0.is_some());
     for mut orbit in &mut cameras {
-        orbit.enabled = !on_panel.0;
+        orbit.enabled = !on_panel.0 && !drags;
     }
 }
 

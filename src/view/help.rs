@@ -25,8 +25,9 @@ impl Default for KeyHelp {
 }
 
 /// Every key and what it does.
-const KEYS: [(&str, &str); 14] = [
+const KEYS: [(&str, &str); 15] = [
     ("Drag", "look around"),
+    ("Drag a body", "pull at it"),
     ("Right drag", "move"),
     ("Wheel", "nearer, further"),
     ("C", "follow the animal"),

@@ -7,7 +7,7 @@ use bevy::{
     prelude::*,
 };
 
-use super::{help::typing, strand::StrandSkin};
+use super::{help::typing, jelly::JellySkin, strand::StrandSkin};
 use crate::{
     body::{Ground, ParticleId, Particles, SpineFriction, SpringId, Strand, StrandSpring},
     mechanics::{ground_distance, ground_grip, rest_lengths},
@@ -73,7 +73,7 @@ fn toggle(keys: Res<ButtonInput<KeyCode>>, mut peeled: ResMut<Peeled>) {
     }
 }
 
-fn hide(peeled: Res<Peeled>, mut skins: Query<&mut Visibility, With<StrandSkin>>) {
+fn hide(peeled: Res<Peeled>, mut skins: Query<&mut Visibility, Or<(With<StrandSkin>, With<JellySkin>)>>) {
     let wanted = if peeled.0 { Visibility::Hidden } else { Visibility::Inherited };
     for mut visibility in &mut skins {
         visibility.set_if_neq(wanted);
@@ -104,6 +104,9 @@ fn draw(
             None => parts.muscles.is_some_and(|muscles| muscles.iter().any(|muscle| muscle.spring == id)),
         };
         for (i, (spring, &rest)) in parts.springs.iter().zip(&rests).enumerate() {
+            if parts.tearing.is_some_and(|tearing| tearing.is_torn(SpringId(i as u32))) {
+                continue;
+            }
             let [from, to] = spring.ends.map(|end| positions[end.index()]);
             if driven(SpringId(i as u32)) {
                 let activation = (rest / spring.rest_length - 1.0) as f32;

@@ -8,7 +8,7 @@ use super::{
     skins::SkinOf,
 };
 use crate::{
-    body::{SpringId, Springs},
+    body::{SpringId, Springs, Tearing},
     physics::Shown,
     scenes::SceneMember,
 };
@@ -85,12 +85,12 @@ pub(super) fn dress(
 
 /// Puts every ball and rod where its body is shown.
 pub(super) fn follow(
-    bodies: Query<(&Shown, Option<&Springs>)>,
+    bodies: Query<(&Shown, Option<&Springs>, Option<&Tearing>)>,
     shades: Query<&Shades>,
     mut parts: Query<(&PlainPart, &SkinOf, &ChildOf, &mut Transform, &mut MeshMaterial3d<Paint>)>,
 ) {
     for (part, of, root, mut transform, mut paint) in &mut parts {
-        let Ok((shown, springs)) = bodies.get(of.0) else { continue };
+        let Ok((shown, springs, tearing)) = bodies.get(of.0) else { continue };
         let at = |i: usize| shown.positions().get(i).copied();
         let size = springs.and_then(|springs| springs.get(SpringId(0))).map_or(1.0, |spring| spring.rest_length as f32);
         match *part {
@@ -101,6 +101,10 @@ pub(super) fn follow(
             PlainPart::Rod(id) => {
                 let Some(spring) = springs.and_then(|springs| springs.get(id)) else { continue };
                 let [Some(from), Some(to)] = spring.ends.map(|end| at(end.index())) else { continue };
+                if tearing.is_some_and(|tearing| tearing.is_torn(id)) {
+                    *transform = Transform::from_scale(Vec3::ZERO);
+                    continue;
+                }
                 let (along, rest) = (to - from, spring.rest_length as f32);
                 let length = along.length();
                 *transform = Transform::from_translation(from)

@@ -5,9 +5,9 @@ use bevy::{
     prelude::*,
 };
 
-use super::{paint::Paint, plain, quality::Quality, six, strand, worm};
+use super::{jelly, paint::Paint, plain, quality::Quality, six, strand, worm};
 use crate::{
-    body::{Springs, Strand},
+    body::{Lattice, Springs, Strand},
     creatures::Look,
     physics::{PhysicsSystems, Shown},
     scenes::{CurrentScene, Props, Runner, garden},
@@ -16,7 +16,7 @@ use crate::{
 pub(super) fn plugin(app: &mut App) {
     app.init_resource::<Skins>().add_systems(
         RunFixedMainLoop,
-        (dress, worm::follow, plain::follow, strand::follow, strand::follow_parts)
+        (dress, worm::follow, plain::follow, strand::follow, strand::follow_parts, jelly::follow)
             .chain()
             .after(PhysicsSystems::Sync)
             .in_set(RunFixedMainLoopSystems::AfterFixedMainLoop),
@@ -42,7 +42,15 @@ struct Kits {
 type Bodies<'w, 's> = Query<
     'w,
     's,
-    (Entity, &'static Look, &'static Shown, Option<&'static Springs>, Option<&'static Strand>, Option<&'static Runner>),
+    (
+        Entity,
+        &'static Look,
+        &'static Shown,
+        Option<&'static Springs>,
+        Option<&'static Strand>,
+        Option<&'static Lattice>,
+        Option<&'static Runner>,
+    ),
 >;
 
 /// What skins are made from.
@@ -77,7 +85,7 @@ fn dress(
         }
         stays
     });
-    for (body, &look, shown, springs, lattice, runner) in &bodies {
+    for (body, &look, shown, springs, strand, block, runner) in &bodies {
         let (particles, held) = (shown.positions().len(), springs.map_or(0, Springs::len));
         if particles == 0 || skins.0.contains_key(&body) {
             continue;
@@ -97,12 +105,14 @@ fn dress(
                 six: six::SixKit::default(),
             }
         });
-        let lattice = lattice.filter(|lattice| lattice.particles() == particles);
-        let root = match (look, lattice) {
-            (Look::Strand(skin), Some(&lattice)) => {
-                strand::dress(body, lattice, skin, &mut kits.strand, &mut cloth, &mut commands)
+        let strand = strand.filter(|strand| strand.particles() == particles);
+        let block = block.filter(|block| block.particles() == particles);
+        let root = match (look, strand, block) {
+            (Look::Strand(skin), Some(&strand), _) => {
+                strand::dress(body, strand, skin, &mut kits.strand, &mut cloth, &mut commands)
             }
-            (Look::GardenWorm, _) if particles >= 2 => {
+            (Look::Jelly, _, Some(&block)) => jelly::dress(body, block, &mut cloth, &mut commands),
+            (Look::GardenWorm, ..) if particles >= 2 => {
                 let dye = runner.map(Runner::color).map(|[r, g, b]| Color::srgb_u8(r, g, b));
                 worm::dress(body, particles, dye, &kits.worm, &mut cloth.paints, &mut commands)
             }

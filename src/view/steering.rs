@@ -4,6 +4,7 @@ use bevy::{ecs::system::SystemParam, math::DVec2, prelude::*, window::PrimaryWin
 
 use super::{
     camera::{PointerOnPanel, SceneCamera},
+    drag::{Dragging, Held},
     help::typing,
 };
 use crate::{
@@ -25,7 +26,7 @@ const REACH: f64 = 300.0;
 
 pub(super) fn plugin(app: &mut App) {
     app.init_resource::<Selected>()
-        .add_systems(Update, (select, lead.run_if(not(typing)), point).chain())
+        .add_systems(Update, (select, lead.run_if(not(typing)), point).chain().after(Dragging))
         .add_systems(Update, mark.after(point));
 }
 
@@ -73,6 +74,7 @@ fn lead(keys: Res<ButtonInput<KeyCode>>, selected: Res<Selected>, mut animals: Q
 struct Pointer<'w, 's> {
     buttons: Res<'w, ButtonInput<MouseButton>>,
     on_panel: Res<'w, PointerOnPanel>,
+    held: Res<'w, Held>,
     windows: Query<'w, 's, &'static Window, With<PrimaryWindow>>,
     cameras: Query<'w, 's, (&'static Camera, &'static GlobalTransform), With<SceneCamera>>,
     pressed: Local<'s, Option<Vec2>>,
@@ -83,7 +85,8 @@ impl Pointer<'_, '_> {
     fn click(&mut self) -> Option<Ray3d> {
         let at = self.windows.iter().next().and_then(Window::cursor_position)?;
         if self.buttons.just_pressed(MouseButton::Left) {
-            *self.pressed = (!self.on_panel.0).then_some(at);
+            // What is pressed on a body drags it.
+            *self.pressed = (!self.on_panel.0 && self.held.0.is_none()).then_some(at);
         }
         if !self.buttons.just_released(MouseButton::Left) {
             return None;

@@ -1,10 +1,11 @@
 //! Draws what work-precision runs have measured: error over cost, in force evaluations and in seconds, on logarithmic axes.
 //!
-//! And what good enough costs with stiffer springs, in [`stiffness`].
+//! And what good enough costs with stiffer springs, in [`stiffness`]; [`curves`] are plain figures over time.
 //!
 //! [`Plot`] says where everything is, [`picture`] draws it into lines, areas and texts, [`svg`] and [`png`] draw those with plotters.
 
 mod axes;
+pub mod curves;
 mod figure;
 mod labels;
 mod legend;

@@ -24,6 +24,9 @@ pub use step_matrix::{growth, linearised_limit};
 /// A scene's limit further from the linearised one than this part of it has a reason.
 const NEAR: f64 = 0.06;
 
+/// The eigenvalues of larger bodies take minutes; they have their bound alone.
+const MOST_LINEARISED: usize = 100;
+
 /// The limits of the step of one body by one method. An infinite limit is none: no step makes the method unstable.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Limits {
@@ -39,7 +42,7 @@ pub struct Limits {
     /// The cheap bound, which is never above the true limit.
     #[serde(serialize_with = "finite")]
     pub bound: f64,
-    /// By bisection on the growth of the linearised step; nothing where the method cannot step the body.
+    /// By bisection on the growth of the linearised step; nothing where the method cannot step the body, and for large bodies.
     #[serde(serialize_with = "limit")]
     pub linearised: Option<f64>,
     /// The smallest step at which the scene's body explodes; nothing where the method cannot step it.
@@ -58,6 +61,20 @@ pub fn limits(scene: &LoadedScene) -> Result<Vec<Limits>, FileError> {
     for body in alike::distinct(ProblemBody::all(scene)?.0) {
         for method in Method::ALL {
             let parts = body.parts(method, scene.file.stick);
+            if parts.particles.len() > MOST_LINEARISED {
+                let bound = parts.stability_limit(0.0);
+                rows.push(Limits {
+                    scene: scene.source.stem(),
+                    body: body.name.clone(),
+                    method: method.name(),
+                    predicted: None,
+                    bound,
+                    linearised: None,
+                    explodes: None,
+                    reason: Some("too large to be linearised"),
+                });
+                continue;
+            }
             let linearised = linearised_limit(&parts);
             let explodes = linearised.and_then(|linearised| scene_limit(&parts, linearised));
             let reason = linearised

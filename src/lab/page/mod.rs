@@ -10,7 +10,7 @@ use super::{
     study_stem,
 };
 
-const STYLE: &str = include_str!("style.css");
+pub(super) const STYLE: &str = include_str!("style.css");
 const READING: &str = include_str!("reading.html");
 
 /// Writes the page of all `charts` as HTML, each with the study of stiffness of its scene if there is one, with their pictures inside and links to the
@@ -97,7 +97,7 @@ fn caption(chart: &WorkPrecision) -> String {
 }
 
 /// Text as it may stand in an element or in an attribute.
-fn escape(text: &str) -> String {
+pub(super) fn escape(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for letter in text.chars() {
         match letter {

@@ -56,6 +56,7 @@ impl Reference {
                 ProblemBody { friction: Some(friction), .. } if friction.isotropic() > 0.0 => {
                     Some("isotropic friction")
                 }
+                ProblemBody { tearing: Some(_), .. } => Some("springs that tear"),
                 ProblemBody { coulomb: Some(_), .. } => Some("Coulomb friction, whose events are not located"),
                 _ => None,
             };

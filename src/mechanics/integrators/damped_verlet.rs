@@ -7,6 +7,7 @@
 
 use crate::mechanics::{
     Model, Real, State,
+    lattice::KickDrift,
     stability::{Rates, StabilityBound},
 };
 
@@ -35,6 +36,11 @@ impl<R: Real, const D: usize> Integrator<R, D> for DampedVerlet<R, D> {
 
     #[inline(always)]
     fn step(&mut self, model: &mut Model<R, D>, state: &mut State<R, D>, time: f64) {
+        let kept = 1.0 - model.damping.map_or(0.0, |damping| damping.loss.lane(0));
+        let rule = KickDrift { dt: model.dt, before: 0.5 * model.dt, after: 0.5 * model.dt, rate: 0.0, kept };
+        if model.step_lattice(rule, state) {
+            return;
+        }
         let (dt, half) = (R::splat(model.dt), R::splat(0.5 * model.dt));
         for ((middle, x), v) in self.middle.iter_mut().zip(&state.position).zip(&state.velocity) {
             for axis in 0..D {

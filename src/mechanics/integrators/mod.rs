@@ -160,6 +160,11 @@ impl Method {
         !matches!(self, Self::Leapfrog | Self::ImplicitMidpoint | Self::ImplicitEuler | Self::ExactFlow)
     }
 
+    /// Whether its steps ask a body only for its forces, and not for its springs one by one.
+    pub fn asks_forces_alone(self) -> bool {
+        self.side_by_side() && self != Self::Xpbd
+    }
+
     /// Whether it can stop its steps where masses stick and slip.
     pub fn locates(self) -> bool {
         matches!(self, Self::RungeKutta2 | Self::RungeKutta4)

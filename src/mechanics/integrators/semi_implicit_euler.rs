@@ -5,6 +5,7 @@
 
 use crate::mechanics::{
     Model, Real, State,
+    lattice::KickDrift,
     stability::{Rates, StabilityBound},
 };
 
@@ -30,6 +31,11 @@ impl<R: Real, const D: usize> Integrator<R, D> for SemiImplicitEuler<R, D> {
 
     #[inline(always)]
     fn step(&mut self, model: &mut Model<R, D>, state: &mut State<R, D>, time: f64) {
+        let rate = model.damping.map_or(0.0, |damping| damping.rate.lane(0));
+        let rule = KickDrift { dt: model.dt, before: 0.0, after: model.dt, rate, kept: 1.0 };
+        if model.step_lattice(rule, state) {
+            return;
+        }
         let dt = R::splat(model.dt);
         model.acceleration(time, &state.position, &state.velocity, &mut self.acceleration);
         for (v, a) in state.velocity.iter_mut().zip(&self.acceleration) {

@@ -5,7 +5,7 @@
 //! symplectic, without damping; order 1 with it, because damping sees the velocity of the step before. Stable up to ω·dt = 2(√(1+ζ²) − ζ), 2
 //! without damping. Sources: C. Størmer (1907); L. Verlet, Phys. Rev. 159 (1967) 98; "Mass-Spring-Damper model", (1.3).
 
-use crate::mechanics::{Model, Real, State, stability::StabilityBound};
+use crate::mechanics::{Model, Real, State, lattice::KickDrift, stability::StabilityBound};
 
 use super::{About, Integrator, semi_implicit_euler};
 
@@ -32,6 +32,11 @@ impl<R: Real, const D: usize> Integrator<R, D> for StormerVerlet<R, D> {
 
     #[inline(always)]
     fn step(&mut self, model: &mut Model<R, D>, state: &mut State<R, D>, time: f64) {
+        let rate = model.damping.map_or(0.0, |damping| damping.rate.lane(0));
+        let rule = KickDrift { dt: model.dt, before: 0.5 * model.dt, after: 0.5 * model.dt, rate, kept: 1.0 };
+        if model.step_lattice(rule, state) {
+            return;
+        }
         let (dt, half) = (R::splat(model.dt), R::splat(0.5 * model.dt));
         for ((middle, x), v) in self.middle.iter_mut().zip(&state.position).zip(&state.velocity) {
             for axis in 0..D {

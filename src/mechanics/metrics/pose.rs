@@ -61,7 +61,11 @@ pub fn section_width(particles: &Particles, strand: Strand, section: usize) -> f
 /// The volume of a segment, as six tetrahedra round a diagonal of its cube: 1 at rest for cubes of edge 1, below 0 inside out. The best single sign of a
 /// strand's health.
 pub fn cell_volume(particles: &Particles, strand: Strand, segment: usize) -> f64 {
-    let at = |i: usize| corner(particles, strand, segment + i / 4, i % 4);
+    hexahedron_volume(|i| corner(particles, strand, segment + i / 4, i % 4))
+}
+
+/// The volume of a body with the corners of a cube: those of one face in order round it, then those across from them.
+pub(super) fn hexahedron_volume(at: impl Fn(usize) -> DVec3) -> f64 {
     let origin = at(0);
     let diagonal = at(6) - origin;
     // The corners round the diagonal from 0 to 6, in order.

@@ -81,7 +81,10 @@ pub(super) struct Values {
     values: Vec<f64>,
 }
 
-/// Every parameter of the scene: the clock's, then body by body in the order of the scene.
+/// The elements of larger bodies can be set one by one and are not listed: nobody reads a hundred thousand springs.
+const MOST_LISTED: usize = 1000;
+
+/// Every parameter of the scene: the clock's, then body by body in the order of the scene. Of more than a thousand springs or particles only what sets them all.
 pub fn list(world: &mut World) -> Vec<Parameter> {
     let mut all = Vec::new();
     for quantity in [Quantity::Dt, Quantity::TimeScale] {
@@ -91,7 +94,7 @@ pub fn list(world: &mut World) -> Vec<Parameter> {
     }
     for Values { body, quantity, values } in body_values(world) {
         all.extend(values.first().map(|&first| quantity.parameter(quantity.path(&body, None), first)));
-        if quantity.group().is_indexed() {
+        if quantity.group().is_indexed() && values.len() <= MOST_LISTED {
             let elements = values.iter().enumerate();
             all.extend(elements.map(|(i, &value)| quantity.parameter(quantity.path(&body, Some(i)), value)));
         }

@@ -8,7 +8,8 @@ use crate::{
         BodyError, Gravity, Muscle, Muscles, Particle, ParticleId, Particles, Requirement, Rules, SpineFriction,
         Spring, SpringId, Springs, TravelingWave, TravelingWaves,
     },
-    physics::Clock,
+    creatures::Attitude,
+    physics::{Clock, StartState},
 };
 
 /// The component that a quantity belongs to.
@@ -24,6 +25,8 @@ pub(super) enum Group {
     Gait,
     Friction,
     Gravity,
+    /// The attitude in which a block starts.
+    Block,
     Bonds,
     Collisions,
     Muscle,
@@ -43,6 +46,7 @@ impl Group {
             Self::Gait => "gait",
             Self::Friction => "friction",
             Self::Gravity => "gravity",
+            Self::Block => "block",
             Self::Bonds => "bonds",
             Self::Collisions => "collisions",
             Self::Muscle => "muscle",
@@ -78,6 +82,7 @@ impl Group {
             Self::Gait,
             Self::Friction,
             Self::Gravity,
+            Self::Block,
             Self::Bonds,
             Self::Collisions,
             Self::Muscle,
@@ -115,6 +120,7 @@ pub(super) enum Quantity {
     Brake,
     Ratchet,
     Gravity,
+    Tilt,
     /// Of a body of the six-matrix particle system.
     Six(SixQuantity),
 }
@@ -123,7 +129,7 @@ pub(super) enum Quantity {
 pub(super) type Facts = (Group, &'static str, Requirement, (f64, f64), &'static str, &'static str);
 
 impl Quantity {
-    pub(super) const OF_BODIES: [Self; 40] = [
+    pub(super) const OF_BODIES: [Self; 41] = [
         Self::Stiffness,
         Self::Damping,
         Self::RestLength,
@@ -145,6 +151,7 @@ impl Quantity {
         Self::Brake,
         Self::Ratchet,
         Self::Gravity,
+        Self::Tilt,
         Self::Six(SixQuantity::Damping),
         Self::Six(SixQuantity::BondStiffness),
         Self::Six(SixQuantity::CollisionStiffness),
@@ -255,6 +262,14 @@ impl Quantity {
             Self::Gravity => {
                 (Group::Gravity, "gravity", NonNegative, (0.0, 1.0), "length/time²", "acceleration towards the ground")
             }
+            Self::Tilt => (
+                Group::Block,
+                "tilt",
+                Finite,
+                (-90.0, 90.0),
+                "°",
+                "how far it leans; setting it puts it back to its start",
+            ),
             Self::Six(six) => six.facts(),
         }
     }
@@ -331,6 +346,7 @@ impl Quantity {
             Group::Friction => usize::from(body.contains::<SpineFriction>()),
             Group::Gravity => usize::from(body.contains::<Particles>() && has_springs),
             Group::Bonds | Group::Collisions | Group::Muscle | Group::Legs | Group::Weight | Group::Drive => 0,
+            Group::Block => usize::from(body.contains::<Attitude>()),
         }
     }
 
@@ -364,6 +380,7 @@ impl Quantity {
                 body.get::<SpineFriction>().map(|friction| self.of_friction(friction)).into_iter().collect()
             }
             Group::Gravity => vec![body.get::<Gravity>().map_or(0.0, |gravity| gravity.acceleration())],
+            Group::Block => body.get::<Attitude>().map(Attitude::tilt).into_iter().collect(),
             Group::Bonds | Group::Collisions | Group::Muscle | Group::Legs | Group::Weight | Group::Drive => Vec::new(),
         }
     }
@@ -436,6 +453,15 @@ impl Quantity {
                 }
                 Group::Gravity => {
                     body.insert(Gravity::new(value)?);
+                }
+                Group::Block => {
+                    let Some(mut attitude) = body.get::<Attitude>().copied() else { continue };
+                    attitude.set_tilt(value)?;
+                    body.insert(attitude);
+                    let Some(mut particles) = body.get_mut::<Particles>() else { continue };
+                    attitude.place(&mut particles)?;
+                    let start = StartState(particles.clone());
+                    body.insert(start);
                 }
             }
         }

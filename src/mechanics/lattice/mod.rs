@@ -1,0 +1,250 @@
+//! Forces of a block on a regular grid: neighbours by where they are, eight springs at a time, layer by layer.
+//!
+//! The general springs look up the ends of each; here the neighbour along a way is always as many numbers further. Two layers of the grid at a time are
+//! laid out coordinate by coordinate, and of each way to a neighbour all springs that begin in the lower layer are computed side by side. A spring acts forward on the
+//! mass at which it begins and back on the other; both sums are kept apart and come together when a layer is done.
+//!
+//! What a mass feels is summed in an order that depends on its place in the grid alone: back along the ways from the layer before, then those of its own layer, in the order of
+//! [`Neighbours::ways`](crate::body::Neighbours::ways), and forward likewise. So a slab of layers comes to the same bits wherever it begins and ends, and threads may share the layers in any
+//! way. A slab computes the springs from the layer before it once more.
+
+mod join;
+mod layer;
+mod sweep;
+mod tasks;
+
+use bevy::tasks::ComputeTaskPool;
+
+use crate::body::{Lattice, Neighbours};
+
+use super::{BodyParts, Model, Real, State, ground::ContactKind, model::LONGEST_STRETCH};
+
+use join::{Ask, LANES, Way};
+use layer::Layer;
+use sweep::{Grid, Slab, run};
+use tasks::{Accelerate, Measure, Move};
+
+pub(super) use tasks::KickDrift;
+
+/// A thread is worth its start for so many particles.
+const PARTICLES_A_THREAD: usize = 4096;
+
+/// A block as the force loop reads it.
+#[derive(Clone, Debug)]
+pub(super) struct LatticeRows {
+    lattice: Lattice,
+    /// The ways along which there are springs: within a layer, and to the next.
+    within: Vec<Way>,
+    onward: Vec<Way>,
+    /// For each of nine ways across a layer, 1 where a mass of the layer has a neighbour there, 0 elsewhere.
+    masks: Vec<Vec<f64>>,
+    damped: bool,
+    /// How long a spring of each kind is when the watch holds the body for exploded.
+    longest: [f64; 3],
+    /// Scratch: two layers for each slab.
+    scratch: Vec<[Layer; 2]>,
+}
+
+impl BodyParts<'_> {
+    /// Whether it is a block on a regular grid, all springs of a kind alike, and stepped by a method that asks for nothing but forces. Such a body is stepped by
+    /// itself, without lists of its springs.
+    pub fn is_regular(&self) -> bool {
+        self.lattice.is_some_and(|lattice| {
+            let alike = |kind: Neighbours| {
+                let range = lattice.range(kind);
+                range.is_empty() || self.springs.uniform(range).is_some()
+            };
+            self.muscles.is_none()
+                && self.strand.is_none()
+                && self.tearing.is_none()
+                && self.method.asks_forces_alone()
+                && Neighbours::ALL.into_iter().all(alike)
+        })
+    }
+}
+
+impl LatticeRows {
+    /// The rows of a body that [is regular](BodyParts::is_regular).
+    pub(super) fn of(body: &BodyParts<'_>) -> Option<Self> {
+        let lattice = body.lattice.filter(|_| body.is_regular())?;
+        let [across, along, _] = lattice.size();
+        let layer = across * along;
+        // Room for a neighbour before the first mass and behind the last, whole vectors of them.
+        let pad = (across + 1).next_multiple_of(LANES);
+        let room = 2 * pad + layer.next_multiple_of(LANES) + LANES;
+        let mask = |way: usize| {
+            let (dx, dy) = (way % 3, way / 3);
+            let mut mask = vec![0.0; room];
+            for (i, value) in mask[pad..pad + layer].iter_mut().enumerate() {
+                // One more than where the neighbour is.
+                let (x, y) = (i % across + dx, i / across + dy);
+                *value = f64::from(u8::from((1..=across).contains(&x) && (1..=along).contains(&y)));
+            }
+            mask
+        };
+        let (mut within, mut onward, mut damped, mut longest) = (Vec::new(), Vec::new(), false, [0.0; 3]);
+        for kind in Neighbours::ALL {
+            let Some(spring) = body.springs.uniform(lattice.range(kind)) else { continue };
+            damped |= spring.damping > 0.0;
+            longest[kind as usize] = LONGEST_STRETCH * spring.rest_length;
+            for &[dx, dy, dz] in kind.ways() {
+                let way = Way {
+                    from: pad + if dy < 0 { across } else { 0 },
+                    upto: pad + layer.saturating_sub(if dy > 0 { across } else { 0 }),
+                    offset: lattice.offset([dx, dy, 0]) as isize,
+                    mask: (dx + 1 + 3 * (dy + 1)) as usize,
+                    stiffness: spring.stiffness,
+                    damping: spring.damping,
+                    rest_length: spring.rest_length,
+                    longest_square: longest[kind as usize] * longest[kind as usize],
+                };
+                if dz == 0 { within.push(way) } else { onward.push(way) }
+            }
+        }
+        let masks = (0..9).map(mask).collect();
+        let rows = Self { lattice, within, onward, masks, damped, longest, scratch: Vec::new() };
+        let slabs = rows.slabs();
+        Some(Self { scratch: vec![[Layer::new(room, pad), Layer::new(room, pad)]; slabs], ..rows })
+    }
+
+    /// Among how many threads its layers are shared.
+    fn slabs(&self) -> usize {
+        let threads = ComputeTaskPool::try_get().map_or(1, |pool| pool.thread_num());
+        (self.lattice.particles() / PARTICLES_A_THREAD).min(threads).min(self.lattice.size()[2]).max(1)
+    }
+
+    /// The ends of all springs in order, and the length at which the watch holds the body for exploded.
+    pub(super) fn springs(&self) -> impl Iterator<Item = ([usize; 2], f64)> + '_ {
+        let kinds = Neighbours::ALL.into_iter().filter(|kind| self.lattice.joins(*kind));
+        kinds.flat_map(move |kind| {
+            let longest = self.longest[kind as usize];
+            self.lattice.ends_between(kind).map(move |ends| (ends.map(|end| end.index()), longest))
+        })
+    }
+
+    /// Parts the layers into slabs, each with its scratch, its first layer and how many it has. `task` makes what is done with each.
+    fn slabs_of<'a, T>(&'a mut self, ask: Ask, mut task: impl FnMut(usize, usize) -> T) -> Vec<Slab<'a, T>> {
+        let [across, along, layers] = self.lattice.size();
+        let Self { within, onward, masks, scratch, .. } = self;
+        let grid = Grid { within, onward, masks, layers, layer: across * along };
+        let share = layers.div_ceil(scratch.len());
+        let starts = (0..layers).step_by(share);
+        let slabs = scratch.iter_mut().zip(starts).map(|(scratch, start)| {
+            let count = share.min(layers - start);
+            Slab { grid, ask, range: start..start + count, scratch, task: task(start, count) }
+        });
+        slabs.collect()
+    }
+
+    /// What the springs and gravity accelerate the masses with. Whether a spring is too long.
+    fn forces(
+        &mut self,
+        position: &[[f64; 3]],
+        velocity: &[[f64; 3]],
+        inverse_mass: &[f64],
+        gravity: f64,
+        acceleration: &mut [[f64; 3]],
+    ) -> bool {
+        let (layer, ask, mut left) = (self.layer(), self.asks_forces(), acceleration);
+        run(self.slabs_of(ask, |start, count| {
+            let (acceleration, rest) = core::mem::take(&mut left).split_at_mut(count * layer);
+            left = rest;
+            Accelerate { position, velocity, inverse_mass, gravity, start, acceleration }
+        }))
+    }
+
+    /// Takes a step. Whether a spring was too long.
+    fn step(
+        &mut self,
+        rule: KickDrift,
+        gravity: f64,
+        floor: bool,
+        inverse_mass: &[f64],
+        mut x: &mut [[f64; 3]],
+        mut v: &mut [[f64; 3]],
+    ) -> bool {
+        let layer = self.layer();
+        // The layers beside each slab, as they are before the step.
+        let mut beside = Vec::new();
+        self.slabs_of(Ask::Lengths, |start, count| {
+            let copy = |z: Option<usize>| {
+                let rows = z.map(|z| z * layer..(z + 1) * layer).filter(|rows| rows.end <= x.len());
+                rows.map(|rows| (x[rows.clone()].to_vec(), v[rows].to_vec())).unwrap_or_default()
+            };
+            beside.push([copy(start.checked_sub(1)), copy(Some(start + count))]);
+        });
+        let (mut beside, ask) = (beside.into_iter(), self.asks_forces());
+        run(self.slabs_of(ask, |start, count| {
+            let (position, more_x) = core::mem::take(&mut x).split_at_mut(count * layer);
+            let (velocity, more_v) = core::mem::take(&mut v).split_at_mut(count * layer);
+            (x, v) = (more_x, more_v);
+            let beside = beside.next().unwrap_or_default();
+            Move { rule, gravity, floor, inverse_mass, start, count, beside, position, velocity }
+        }))
+    }
+
+    fn asks_forces(&self) -> Ask {
+        if self.damped { Ask::Damped } else { Ask::Stiff }
+    }
+
+    /// How many masses a layer has.
+    fn layer(&self) -> usize {
+        let [across, along, _] = self.lattice.size();
+        across * along
+    }
+}
+
+/// The vectors of a body alone, which have three coordinates.
+fn vectors<R: Real, const D: usize>(rows: &[[R; D]]) -> Option<&[[f64; 3]]> {
+    R::alone(rows.as_flattened()).filter(|_| D == 3).map(|values| values.as_chunks().0)
+}
+
+fn vectors_mut<R: Real, const D: usize>(rows: &mut [[R; D]]) -> Option<&mut [[f64; 3]]> {
+    R::alone_mut(rows.as_flattened_mut()).filter(|_| D == 3).map(|values| values.as_chunks_mut().0)
+}
+
+impl<R: Real, const D: usize> Model<R, D> {
+    /// What the springs of a block and gravity accelerate every particle with.
+    #[inline(never)]
+    pub(super) fn lattice_forces(&mut self, position: &[[R; D]], velocity: &[[R; D]], acceleration: &mut [[R; D]]) {
+        let gravity = self.gravity.map_or(0.0, |gravity| gravity.lane(0));
+        let Self { lattice: Some(rows), inverse_mass, overstretched, .. } = self else { return };
+        let (Some(position), Some(velocity)) = (vectors(position), vectors(velocity)) else { return };
+        let (Some(inverse_mass), Some(acceleration)) = (R::alone(inverse_mass), vectors_mut(acceleration)) else {
+            return;
+        };
+        if rows.forces(position, velocity, inverse_mass, gravity, acceleration) {
+            *overstretched = R::splat(1.0);
+        }
+    }
+
+    /// Takes a whole step with a block on which nothing acts but its springs, gravity, damping by mass and the flat ground: every layer is moved as soon as its forces are
+    /// known, while it is in the cache. Gives back whether it did; if not, the step is still to be taken.
+    #[inline(never)]
+    pub(super) fn step_lattice(&mut self, rule: KickDrift, state: &mut State<R, D>) -> bool {
+        let (kind, gravity) = (self.contact.kind, self.gravity.map_or(0.0, |gravity| gravity.lane(0)));
+        if self.pull.is_some() || self.friction.is_some() || self.coulomb.is_some() || kind == ContactKind::Terrain {
+            return false;
+        }
+        let Self { lattice: Some(rows), inverse_mass, overstretched, evaluations, .. } = self else { return false };
+        let (Some(inverse_mass), Some(position)) = (R::alone(inverse_mass), vectors_mut(&mut state.position)) else {
+            return false;
+        };
+        let Some(velocity) = vectors_mut(&mut state.velocity) else { return false };
+        *evaluations += R::splat(1.0);
+        if rows.step(rule, gravity, kind == ContactKind::Flat, inverse_mass, position, velocity) {
+            *overstretched = R::splat(1.0);
+        }
+        true
+    }
+
+    /// Notes springs of a block that are too long.
+    #[inline(never)]
+    pub(super) fn note_lattice(&mut self, state: &State<R, D>) {
+        let Self { lattice: Some(rows), overstretched, .. } = self else { return };
+        let Some(position) = vectors(&state.position) else { return };
+        if run(rows.slabs_of(Ask::Lengths, |_, _| Measure { position })) {
+            *overstretched = R::splat(1.0);
+        }
+    }
+}

@@ -1,0 +1,147 @@
+//! The skin of jelly: its outer masses, joined to a smooth translucent surface.
+
+use bevy::{
+    asset::RenderAssetUsages,
+    camera::visibility::NoFrustumCulling,
+    mesh::{Indices, PrimitiveTopology, VertexAttributeValues},
+    prelude::*,
+};
+
+use super::{
+    clay::tint,
+    paint::Paint,
+    skins::{Cloth, SkinOf},
+};
+use crate::{
+    body::{Lattice, Neighbours},
+    physics::Shown,
+    scenes::SceneMember,
+};
+
+/// How much of what is behind it the skin covers.
+const OPACITY: f32 = 0.82;
+
+/// The skin that a block wears.
+#[derive(Component)]
+pub(super) struct JellySkin {
+    mesh: Handle<Mesh>,
+    /// The particle of each vertex.
+    outer: Vec<usize>,
+    triangles: Vec<[u32; 3]>,
+    /// Scratch.
+    positions: Vec<[f32; 3]>,
+    normals: Vec<Vec3>,
+}
+
+/// Spawns the skin of a block. Its colour says which neighbours are joined.
+pub(super) fn dress(body: Entity, lattice: Lattice, cloth: &mut Cloth<'_>, commands: &mut Commands) -> Entity {
+    let (outer, triangles) = surface(lattice.size());
+    let color = match (lattice.joins(Neighbours::Faces), lattice.joins(Neighbours::Cubes)) {
+        (false, false) => 0xe39b2f,
+        (true, false) => 0x35a86b,
+        (false, true) => 0x3f7fd6,
+        (true, true) => 0xd0435a,
+    };
+    let [red, green, blue, _] = tint(color);
+    let count = outer.len();
+    let mesh = Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::default())
+        .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, vec![[0.0; 3]; count])
+        .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, vec![[0.0, 1.0, 0.0]; count])
+        .with_inserted_attribute(Mesh::ATTRIBUTE_COLOR, vec![[red, green, blue, OPACITY]; count])
+        .with_inserted_indices(Indices::U32(triangles.as_flattened().to_vec()));
+    let mesh = cloth.meshes.add(mesh);
+    let paint = cloth.paints.add(Paint { sheer: true, ..Paint::glossy(cloth.quality.shadows(), 0.8) });
+    let skin = JellySkin { mesh: mesh.clone(), outer, triangles, positions: Vec::new(), normals: Vec::new() };
+    let root = commands.spawn((SceneMember, SkinOf(body), skin, Transform::default(), Visibility::default())).id();
+    // The mesh moves away from where its bounds were taken.
+    commands.spawn((Mesh3d(mesh), MeshMaterial3d(paint), NoFrustumCulling, ChildOf(root)));
+    root
+}
+
+/// Lays every skin over the masses of its body where they are shown.
+pub(super) fn follow(
+    bodies: Query<&Shown>,
+    mut skins: Query<(&SkinOf, &mut JellySkin)>,
+    mut meshes: ResMut<Assets<Mesh>>,
+) {
+    for (of, mut skin) in &mut skins {
+        let Ok(shown) = bodies.get(of.0) else { continue };
+        let JellySkin { mesh, outer, triangles, positions, normals } = &mut *skin;
+        let Some(mut mesh) = meshes.get_mut(&*mesh) else { continue };
+        positions.clear();
+        positions.extend(outer.iter().map(|&i| shown.positions().get(i).copied().unwrap_or_default().to_array()));
+        normals.clear();
+        normals.resize(outer.len(), Vec3::ZERO);
+        for corners in triangles {
+            let [a, b, c] = corners.map(|corner| Vec3::from(positions[corner as usize]));
+            // As long as the triangle is large.
+            let normal = (b - a).cross(c - a);
+            for corner in corners {
+                normals[*corner as usize] += normal;
+            }
+        }
+        if let Some(VertexAttributeValues::Float32x3(values)) = mesh.attribute_mut(Mesh::ATTRIBUTE_POSITION) {
+            values.clone_from(positions);
+        }
+        if let Some(VertexAttributeValues::Float32x3(values)) = mesh.attribute_mut(Mesh::ATTRIBUTE_NORMAL) {
+            values.clear();
+            values.extend(normals.iter().map(|normal| normal.normalize_or(Vec3::Y).to_array()));
+        }
+    }
+}
+
+/// The outer masses of a grid, and triangles between them by their order, counterclockwise as seen from outside.
+fn surface(size: [usize; 3]) -> (Vec<usize>, Vec<[u32; 3]>) {
+    let [across, along, layers] = size;
+    let (mut outer, mut vertices) = (Vec::new(), vec![None; across * along * layers]);
+    let mut triangles = Vec::new();
+    for axis in 0..3 {
+        let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+        for far in [false, true] {
+            let mut vertex = |i: usize, j: usize| {
+                let mut place = [0; 3];
+                (place[axis], place[u], place[v]) = (if far { size[axis] - 1 } else { 0 }, i, j);
+                let particle = place[0] + across * (place[1] + along * place[2]);
+                *vertices[particle].get_or_insert_with(|| {
+                    outer.push(particle);
+                    outer.len() as u32 - 1
+                })
+            };
+            for i in 0..size[u] - 1 {
+                for j in 0..size[v] - 1 {
+                    let [a, b, c, d] = [vertex(i, j), vertex(i + 1, j), vertex(i + 1, j + 1), vertex(i, j + 1)];
+                    // u × v leads along the axis, which is outwards on the far side.
+                    triangles.extend(if far { [[a, b, c], [a, c, d]] } else { [[a, c, b], [a, d, c]] });
+                }
+            }
+        }
+    }
+    (outer, triangles)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_surface_of_a_grid_is_closed_and_looks_outwards() {
+        let size = [4, 3, 5];
+        let (outer, triangles) = surface(size);
+        // All masses but those inside; two triangles for each face of a cell.
+        assert_eq!(outer.len(), 4 * 3 * 5 - 2 * 3);
+        assert_eq!(triangles.len(), 2 * 2 * (3 * 2 + 3 * 4 + 2 * 4));
+        let place = |corner: u32| {
+            let i = outer[corner as usize];
+            Vec3::new((i % 4) as f32, (i / 4 % 3) as f32, (i / 12) as f32)
+        };
+        let middle = Vec3::new(1.5, 1.0, 2.0);
+        let volume: f32 = triangles
+            .iter()
+            .map(|corners| {
+                let [a, b, c] = corners.map(|corner| place(corner) - middle);
+                a.dot(b.cross(c)) / 6.0
+            })
+            .sum();
+        assert!((volume - 3.0 * 2.0 * 4.0).abs() < 1e-4, "{volume}");
+    }
+}

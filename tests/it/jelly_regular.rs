@@ -1,0 +1,189 @@
+//! Regular blocks, stepped without lists of their springs, against the general springs and on several threads.
+
+use std::process::Command;
+
+use bevy::math::DVec3;
+use wriggle::{
+    body::{Gravity, Ground, MassDamping, Neighbours, Particle, ParticleId, Particles, SpringId},
+    creatures::{Body, Creature, JellyPlan, NeighboursPlan, Pose, SpringPlan},
+    mechanics::{
+        Advance, BodyParts, Model, State, Timeline,
+        integrators::{Method, StickRule},
+    },
+};
+
+use crate::{
+    jelly::{KINDS, body, cube},
+    support::bits,
+};
+
+fn parts(body: &Body, method: Method) -> BodyParts<'_> {
+    BodyParts {
+        particles: &body.particles,
+        springs: &body.springs,
+        muscles: None,
+        strand: None,
+        lattice: body.block.map(|(lattice, _)| lattice),
+        pull: None,
+        tearing: None,
+        waves: None,
+        guidance: Default::default(),
+        friction: None,
+        coulomb: None,
+        gravity: Gravity::new(0.01).ok(),
+        ground: Some(&Ground::Flat),
+        mass_damping: MassDamping::rate(0.05).ok(),
+        method,
+        stick: StickRule::InStages,
+    }
+}
+
+fn after(parts: &BodyParts<'_>, steps: u64) -> Particles {
+    let dt = 0.1;
+    let mut model = Model::<f64, 3>::new(parts, [], dt);
+    let mut state = State::new(parts.particles.len());
+    state.set_lane(0, parts.particles);
+    let timeline = Timeline { dt, base_step: 0, base_time: 0.0 };
+    Advance { model: &mut model, state: &mut state, method: parts.method, timeline, first: 0, steps }.run();
+    model.note(&state);
+    assert!(!model.has_exploded(0));
+    let mut particles = parts.particles.clone();
+    state.write_lane(0, &mut particles);
+    particles
+}
+
+/// A block that is deformed and moves, with a mass that is pinned and one that is heavy.
+fn moving(size: (u32, u32, u32), kinds: &[Neighbours]) -> Body {
+    let springs = NeighboursPlan {
+        edges: Some(SpringPlan { stiffness: 1.0, damping: 0.0 }),
+        faces: kinds.contains(&Neighbours::Faces).then_some(SpringPlan { stiffness: 0.7, damping: 0.2 }),
+        cubes: kinds.contains(&Neighbours::Cubes).then_some(SpringPlan { stiffness: 0.4, damping: 0.1 }),
+    };
+    let mut body = body(JellyPlan { size, neighbours: springs, drop: 0.3, tilt: 8.0, ..cube(1, kinds, 0.0) });
+    for i in 0..body.particles.len() as u32 {
+        let wobble = |prime: u32, modulus: u32| f64::from(i * prime % modulus) / f64::from(modulus) - 0.5;
+        let offset = DVec3::new(wobble(7, 11), wobble(5, 13), wobble(3, 17)) * 0.2;
+        let particle = body.particles.get(ParticleId(i)).unwrap();
+        let velocity = if i == 1 { DVec3::ZERO } else { offset };
+        let changed = Particle {
+            position: particle.position + offset,
+            velocity,
+            mass: if i == 2 { 3.0 } else { 1.0 },
+            pinned: i == 1,
+        };
+        body.particles.set(ParticleId(i), changed).unwrap();
+    }
+    body
+}
+
+#[test]
+fn a_regular_block_moves_as_its_springs_one_by_one_would_move_it() {
+    let sizes = [((4, 3, 5), KINDS[3]), ((9, 2, 3), KINDS[3]), ((17, 4, 2), KINDS[1]), ((2, 2, 2), KINDS[2])];
+    for (size, kinds) in sizes.into_iter().chain([((1, 4, 5), KINDS[1]), ((3, 1, 1), KINDS[0])]) {
+        let body = moving(size, kinds);
+        for method in Method::ALL.into_iter().filter(|method| method.asks_forces_alone()) {
+            let parts = parts(&body, method);
+            assert!(parts.is_regular());
+            let (regular, general) = (after(&parts, 60), after(&BodyParts { lattice: None, ..parts }, 60));
+            let apart = |a: DVec3, b: DVec3| (a - b).abs().max_element();
+            let far = regular.positions().zip(general.positions()).map(|(a, b)| apart(a, b)).fold(0.0, f64::max);
+            let fast = regular.velocities().zip(general.velocities()).map(|(a, b)| apart(a, b)).fold(0.0, f64::max);
+            assert!(far < 1e-12 && fast < 1e-12, "{size:?} {method:?}: {far:e}, {fast:e} apart");
+            assert!(regular.positions().zip(body.particles.positions()).any(|(a, b)| a.distance(b) > 0.1));
+        }
+    }
+}
+
+#[test]
+fn a_block_of_which_one_spring_differs_is_not_regular() {
+    let mut body = body(cube(3, KINDS[3], 0.0));
+    assert!(parts(&body, Method::DampedVerlet).is_regular());
+    assert!(!parts(&body, Method::ImplicitEuler).is_regular());
+    let spring = body.springs.get(SpringId(60)).unwrap();
+    body.springs.set(SpringId(60), wriggle::body::Spring { stiffness: 2.0, ..spring }).unwrap();
+    assert!(!parts(&body, Method::DampedVerlet).is_regular());
+    assert_eq!(body.springs.get(SpringId(60)).unwrap().stiffness, 2.0);
+    assert!([59, 61].iter().all(|&i| body.springs.get(SpringId(i)).unwrap().stiffness == 1.0));
+    body.springs.set(SpringId(60), spring).unwrap();
+    assert!(parts(&body, Method::DampedVerlet).is_regular());
+    // All of a kind, one after the other.
+    for i in 0..54 {
+        let spring = body.springs.get(SpringId(i)).unwrap();
+        body.springs.set(SpringId(i), wriggle::body::Spring { damping: 0.5, ..spring }).unwrap();
+    }
+    assert!(parts(&body, Method::DampedVerlet).is_regular());
+    assert!(body.springs.iter().enumerate().all(|(i, spring)| spring.damping == if i < 54 { 0.5 } else { 0.0 }));
+}
+
+#[test]
+fn the_number_of_threads_changes_no_bit_of_a_block() {
+    let folder = tempfile::TempDir::new().unwrap();
+    let file = folder.path().join("large.creature.ron");
+    // Large enough for slabs of its layers: two of them with two threads, three with three.
+    std::fs::write(
+        &file,
+        "Creature(version: 1, body: Jelly(size: (24, 22, 25), tilt: 10, drop: 0.01,
+           neighbours: (edges: (stiffness: 1, damping: 0.1), faces: (stiffness: 1), cubes: (stiffness: 1, damping: 0.2))),
+         ground: Flat, gravity: 0.05)",
+    )
+    .unwrap();
+    let hash = |threads: &str| {
+        let file = file.to_str().unwrap();
+        let run = ["run", file, "--for", "3", "--dt", "0.1", "--threads", threads, "--json"];
+        let output = Command::new(env!("CARGO_BIN_EXE_wriggle")).args(run).output().unwrap();
+        assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+        let result: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        (result["hash"].to_string(), result["threads"].as_u64())
+    };
+    let (one, threads) = hash("1");
+    assert_eq!(threads, Some(1));
+    for threads in ["2", "3"] {
+        assert_eq!(hash(threads).0, one, "{threads} threads");
+    }
+}
+
+#[test]
+fn two_equal_blocks_have_the_bits_of_one_alone() {
+    use crate::support::{particles, stepping_app};
+    use bevy::ecs::system::EntityCommand;
+    let run = |count: usize| {
+        let mut app = stepping_app(0.1, 20);
+        let blocks: Vec<_> = (0..count)
+            .map(|_| {
+                let block =
+                    app.world_mut().spawn((Method::DampedVerlet, Gravity::new(0.01).unwrap(), Ground::Flat)).id();
+                let body =
+                    Creature::from(cube(3, KINDS[3], 0.1)).body(Pose { heading: 20.0, ..Pose::default() }).unwrap();
+                body.apply(app.world_mut().entity_mut(block));
+                crate::jelly::shake(&mut app, block, 0.5);
+                block
+            })
+            .collect();
+        app.update();
+        app.update();
+        blocks.into_iter().map(|block| bits(particles(&app, block))).collect::<Vec<_>>()
+    };
+    let alone = run(1);
+    assert!(run(3).iter().all(|block| *block == alone[0]));
+}
+
+#[test]
+fn a_block_that_explodes_is_frozen_at_the_same_step_whatever_the_ticks() {
+    use crate::support::{particles, stepping_app};
+    use bevy::ecs::system::EntityCommand;
+    use wriggle::physics::{Clock, Frozen};
+    let run = |steps: u64| {
+        let mut app = stepping_app(0.6, steps);
+        let block = app.world_mut().spawn(Method::SemiImplicitEuler).id();
+        body(cube(4, KINDS[3], 0.0)).apply(app.world_mut().entity_mut(block));
+        crate::jelly::shake(&mut app, block, 0.1);
+        while app.world().resource::<Clock>().step() < 600 {
+            app.update();
+        }
+        (app.world().get::<Frozen>(block).cloned(), bits(particles(&app, block)))
+    };
+    let one_by_one = run(1);
+    assert!(one_by_one.0.as_ref().is_some_and(|frozen| frozen.reason.contains("longer than ten rest lengths")));
+    assert_eq!(run(600), one_by_one);
+    assert_eq!(run(7).0, one_by_one.0);
+}
