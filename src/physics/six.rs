@@ -64,11 +64,11 @@ pub(super) fn plan(mut bodies: Query<(&Particles, &Columns, Fixed, &mut Plan), C
     }
 }
 
+/// What is read of a body to watch its limit.
+type Watched = (Option<&'static Name>, &'static mut Plan);
+
 /// Warns where dt is above a limit.
-pub(super) fn watch_limit(
-    clock: Res<Clock>,
-    mut bodies: Query<(Option<&Name>, &mut Plan), (With<Rules>, Without<Frozen>)>,
-) {
+pub(super) fn watch_limit(clock: Res<Clock>, mut bodies: Query<Watched, (With<Rules>, Without<Frozen>)>) {
     let dt = clock.dt();
     for (name, mut plan) in &mut bodies {
         if dt <= plan.stability_limit {

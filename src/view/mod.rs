@@ -68,7 +68,7 @@ impl Plugin for ViewPlugin {
         .insert_resource(ClearColor(Color::srgb(0.72, 0.87, 0.95)))
         .add_systems(Update, decorate.before(six::Lay).run_if(resource_exists_and_changed::<CurrentScene>));
         if app.is_plugin_added::<WinitPlugin>() {
-            app.add_plugins((help::plugin, drag::plugin, steering::plugin, six::words));
+            app.add_plugins((help::plugin, drag::plugin, steering::plugin, six::words::plugin));
         }
     }
 

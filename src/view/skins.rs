@@ -62,7 +62,7 @@ pub(super) struct Cloth<'w> {
     pub images: ResMut<'w, Assets<Image>>,
 }
 
-pub(super) fn dress(
+fn dress(
     bodies: Bodies,
     scene: Option<Res<CurrentScene>>,
     mut skins: ResMut<Skins>,

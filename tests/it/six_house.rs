@@ -8,7 +8,7 @@ use wriggle::{
     body::{Columns, Rules},
     creatures::{Composed, Creature, Inchworm, Pose, Roller},
     mechanics::six_matrix::{Road, RoadSearch, look},
-    physics::{BodyFrozen, Clock, Frozen, Restart, six_parts},
+    physics::{BodyFrozen, Clock, Frozen, Restart, Trail, six_parts},
     scenes::{self, SceneBodies, parameters},
 };
 
@@ -32,6 +32,9 @@ fn ticks_neighbours_and_restarts_change_no_bits() {
     let (mut app, bodies) = open("flat-strip", 600);
     app.update();
     let expected = state(&app, &bodies);
+    let trail = |app: &App| app.world().get::<Trail>(bodies[1]).unwrap().clone();
+    let way = trail(&app);
+    assert_eq!(way.points().len(), 60);
     app.world_mut().write_message(Restart);
     app.world_mut().resource_mut::<Clock>().set_steps_per_tick(7);
     while app.world().resource::<Clock>().step() < 600 {
@@ -41,6 +44,7 @@ fn ticks_neighbours_and_restarts_change_no_bits() {
     }
     assert_eq!(app.world().resource::<Clock>().step(), 600);
     assert_eq!(state(&app, &bodies), expected, "after a restart, seven steps a tick");
+    assert_eq!(trail(&app), way);
     for (i, creature) in ["inchworm", "roller"].into_iter().enumerate() {
         let (mut alone, body) = open(creature, 600);
         alone.update();
@@ -155,7 +159,7 @@ fn a_written_out_creature_moves_like_its_kind() {
 
 #[test]
 fn creatures_of_no_document_get_on() {
-    let (mut app, bodies) = open("ramp", 1000);
+    let (mut app, bodies) = open("ramp", 2000);
     let start: Vec<_> = bodies.iter().map(|body| particles(&app, *body).center()).collect();
     app.update();
     for (body, start) in bodies.iter().zip(start) {
@@ -252,7 +256,8 @@ fn bad_files_are_told_what_would_be_right() {
         ("Roller(table: (left_side: (0, 2)))".into(), ["table.left_side", "(0, 2) is not allowed"]),
         ("Inchworm(half: 0)".into(), ["half", "above 0"]),
         (
-            r#"Composed(groups: [(name: "a", shape: Points([])), (name: "a", shape: Points([]))])"#.into(),
+            r#"Composed(groups: [(name: "a", shape: Points([(0, 0, 0)])), (name: "a", shape: Points([(3, 0, 0)]))])"#
+                .into(),
             ["groups[1].name", "give each a name of its own"],
         ),
         ("Composed(groups: [])".into(), ["particles", "at least one particle"]),
@@ -273,7 +278,7 @@ fn bad_places_on_roads_are_told() {
     let roller = |rest: &str| format!(r#"creatures: [(name: "r", creature: "roller", {rest})]"#);
     for (rest, part) in [
         (roller("on_road: (row: 3)"), "has no road to stand on"),
-        (roller(r#"road: "rough-road", on_road: (row: 3, aside: 50)"#), "no road is below it there"),
+        (roller(r#"road: "rough-road", on_road: (row: 3, aside: 500)"#), "no road is below it there"),
         (roller(r#"road: "rough-raod""#), "rough-road"),
         (
             r#"road: "rough-road", creatures: [(name: "w", creature: "garden-worm", on_road: (row: 3))]"#.into(),

@@ -542,7 +542,8 @@ fn particles_in_the_same_place_leave_each_other_alone() {
 fn roads_of_one_particle_and_of_none_are_roads() {
     let leg = wriggle::body::Leg {
         particle: wriggle::body::ParticleId(0),
-        clock: wriggle::body::ParticleId(0),
+        // Whose memory stays (0, 0, 0): the leg is free.
+        clock: wriggle::body::ParticleId(1),
         free: wriggle::body::Free::Contracting,
         seek: 0.5,
         push: 0.0,
@@ -551,7 +552,8 @@ fn roads_of_one_particle_and_of_none_are_roads() {
     };
     let run = |road: Option<Vec<DVec3>>, from: DVec3| {
         let road = road.map(|points| Road::new(points, Vec::new()).unwrap());
-        bare(&[from], |_, _| false, vec![Rule::Leg(leg)], road).after(3000, |state| state.position[0])
+        let places = [from, DVec3::new(0.0, -500.0, 0.0)];
+        bare(&places, |_, _| false, vec![Rule::Leg(leg)], road).after(3000, |state| state.position[0])
     };
     // A leg is drawn to the one particle from however far, and comes to rest near it, pushed off and drawn on.
     for from in [DVec3::new(1.0, 1.0, 0.0), DVec3::new(300.0, 40.0, 0.0)] {

@@ -165,7 +165,7 @@ pub struct WeightPlan {
     /// The groups that have it.
     pub on: Vec<String>,
     /// What it adds to a velocity in a step, downwards. Left out: 0.32.
-    #[serde(default = "third", deserialize_with = "numbers::finite")]
+    #[serde(default = "printed_weight", deserialize_with = "numbers::finite")]
     pub pull: f64,
 }
 
@@ -224,7 +224,7 @@ pub enum SixSkin {
     /// A ball a particle.
     #[default]
     Plain,
-    /// A tube with segments through the particles of the first group, and its legs.
+    /// A tube with segments through all particles that are no legs, in their order, and legs.
     Organic,
     /// Tyres, axles and beams.
     Mechanical,
@@ -242,7 +242,7 @@ fn half() -> f64 {
     0.5
 }
 
-fn third() -> f64 {
+fn printed_weight() -> f64 {
     0.32
 }
 

@@ -69,7 +69,7 @@ pub struct Strip {
     pub bump: f64,
 }
 
-/// Rough Road (Holopainen and Rönkkö 2007, section 5): rings of particles along an S of two curves, 1 ≤ 30 of them down and the others up again.
+/// Rough Road (Holopainen and Rönkkö 2007, section 5): rings of particles along an S of two curves, the first half of them down and the others up again.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Rough {

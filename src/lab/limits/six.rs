@@ -12,8 +12,9 @@ use crate::{
 
 use super::{Limits, search::bisect};
 
-/// How many steps a body is watched.
+/// How many steps the bonds are watched, and how many the whole body: what leaves its road falls apart at any step.
 const STEPS: usize = 4000;
+const STEPS_ON_ROAD: usize = 600;
 /// How far its particles are disturbed, and by how much the disturbance may grow.
 const DISTURBANCE: f64 = 1e-6;
 const GROWTH: f64 = 1e3;
@@ -79,7 +80,7 @@ fn search(predicted: f64, good: impl Fn(f64) -> bool) -> f64 {
 /// Whether the body takes all steps without bursting.
 fn runs(body: &SixParts<'_>, dt: f64) -> bool {
     let mut stepper = Stepper::new(body);
-    (0..STEPS).all(|_| stepper.step(body, dt).is_ok())
+    (0..STEPS_ON_ROAD).all(|_| stepper.step(body, dt).is_ok())
 }
 
 /// Whether a small disturbance stays small.

@@ -18,11 +18,11 @@ use super::{
 
 /// The road that a body moves on: unit balls that never move. Cheap to share between bodies. A body without it, or with one of no particles, touches nothing, its
 /// legs are drawn nowhere and its beams miss.
-#[derive(Clone, Component, Debug, Reflect)]
+#[derive(Clone, Component, Reflect)]
 #[reflect(Component)]
 pub struct Road(Arc<RoadParticles>);
 
-#[derive(Debug, TypePath)]
+#[derive(TypePath)]
 struct RoadParticles {
     points: Vec<DVec3>,
     line: Vec<DVec3>,
@@ -90,6 +90,12 @@ impl Road {
     /// How long its middle is, seen from above.
     pub fn length(&self) -> f64 {
         self.0.line.windows(2).map(|ends| (ends[1] - ends[0]).with_y(0.0).length()).sum()
+    }
+}
+
+impl core::fmt::Debug for Road {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        write!(f, "Road({} particles)", self.points().len())
     }
 }
 

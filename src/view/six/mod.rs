@@ -7,7 +7,7 @@ mod inchworm;
 mod road;
 mod roller;
 mod trail;
-mod words;
+pub(super) mod words;
 
 use bevy::{camera::visibility::NoFrustumCulling, platform::collections::HashMap, prelude::*};
 
@@ -30,15 +30,9 @@ pub(super) use road::{Lay, lowest};
 pub(super) fn plugin(app: &mut App) {
     app.add_plugins(road::plugin).add_systems(
         RunFixedMainLoop,
-        follow
-            .after(super::skins::dress)
-            .after(PhysicsSystems::Sync)
-            .in_set(RunFixedMainLoopSystems::AfterFixedMainLoop),
+        follow.after(PhysicsSystems::Sync).in_set(RunFixedMainLoopSystems::AfterFixedMainLoop),
     );
 }
-
-/// What is spoken of it, where there is a window.
-pub(super) use words::plugin as words;
 
 /// The paint of all creatures, made when the first one is dressed.
 #[derive(Default)]

@@ -7,18 +7,35 @@ use bevy_egui::{
 };
 
 use crate::{
-    body::{Rule, Rules},
-    mechanics::six_matrix::{Road, look},
-    physics::six_parts,
+    body::{Bonds, Collisions, Columns, Particles, Rule, Rules},
+    mechanics::six_matrix::{Road, SixParts, look},
 };
 
 pub(in crate::view) fn plugin(app: &mut App) {
     app.add_systems(EguiPrimaryContextPass, write);
 }
 
+type Bodies<'w, 's> = Query<
+    'w,
+    's,
+    (
+        &'static Name,
+        &'static Particles,
+        &'static Columns,
+        &'static Bonds,
+        &'static Collisions,
+        &'static Rules,
+        Option<&'static Road>,
+    ),
+>;
+
 /// One line a creature: which beams miss and what is decided, or the phase of the muscle and which legs grip.
-fn write(mut contexts: EguiContexts, bodies: Query<(EntityRef, &Name), With<Rules>>) -> Result {
-    let lines: Vec<_> = bodies.iter().filter_map(|(body, name)| Some(format!("{name}: {}", words(body)?))).collect();
+fn write(mut contexts: EguiContexts, bodies: Bodies) -> Result {
+    let line = |(name, particles, columns, bonds, collisions, rules, road)| {
+        let parts = SixParts { particles, columns, bonds, collisions, rules, road };
+        Some(format!("{}: {}", Name::as_str(name), words(&parts)?))
+    };
+    let lines: Vec<_> = bodies.iter().filter_map(line).collect();
     if lines.is_empty() {
         return Ok(());
     }
@@ -35,8 +52,7 @@ fn write(mut contexts: EguiContexts, bodies: Query<(EntityRef, &Name), With<Rule
     Ok(())
 }
 
-fn words(body: EntityRef<'_>) -> Option<String> {
-    let parts = six_parts(body)?;
+fn words(parts: &SixParts<'_>) -> Option<String> {
     let mut words = Vec::new();
     for rule in parts.rules.iter() {
         match rule {
@@ -47,7 +63,7 @@ fn words(body: EntityRef<'_>) -> Option<String> {
             }
             Rule::Drive(drive) => {
                 let position: Vec<_> = parts.particles.positions().collect();
-                let sight = look(drive, &position, body.get::<Road>());
+                let sight = look(drive, &position, parts.road);
                 let wheel = |goal: f64| match goal {
                     goal if goal > 0.0 => "forwards",
                     goal if goal < 0.0 => "backwards",
