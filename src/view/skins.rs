@@ -116,7 +116,7 @@ fn dress(
                 let dye = runner.map(Runner::color).map(|[r, g, b]| Color::srgb_u8(r, g, b));
                 worm::dress(body, particles, dye, &kits.worm, &mut cloth.paints, &mut commands)
             }
-            (Look::SixMatrix(skin), _) => {
+            (Look::SixMatrix(skin), ..) => {
                 let Cloth { quality, meshes, paints, .. } = &mut cloth;
                 six::dress(body, skin, &mut kits.six, **quality, meshes, paints, &mut commands)
             }
