@@ -63,12 +63,15 @@ pub struct Table {
     pub rows: Vec<Vec<String>>,
 }
 
+/// What answers a question.
+type Question = fn(&ExerciseOptions) -> Result<Answer, BodyError>;
+
 /// Answers the exercise. `done` is told after each answer how many there are.
 ///
 /// # Errors
 /// If a block cannot be built.
 pub fn exercise(options: &ExerciseOptions, done: &mut dyn FnMut(usize)) -> Result<Exercise, BodyError> {
-    let questions: [fn(&ExerciseOptions) -> Result<Answer, BodyError>; 5] =
+    let questions: [Question; 5] =
         [answers::template, answers::springs, answers::tilts, answers::neighbours, answers::verlet];
     let mut all = Vec::new();
     for question in questions {
