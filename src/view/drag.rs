@@ -39,12 +39,15 @@ impl Pointer<'_, '_> {
     }
 }
 
+/// Bodies with springs that move.
+type Takeable = (Without<Frozen>, Without<Rules>);
+
 /// Takes the particle under the pointer. Bodies that rules move have no springs that a hand could pull against.
 fn take(
     buttons: Res<ButtonInput<MouseButton>>,
     on_panel: Res<PointerOnPanel>,
     pointer: Pointer,
-    bodies: Query<(Entity, &Shown, &Particles), (Without<Frozen>, Without<Rules>)>,
+    bodies: Query<(Entity, &Shown, &Particles), Takeable>,
     mut held: ResMut<Held>,
     mut commands: Commands,
 ) {

@@ -73,7 +73,10 @@ fn toggle(keys: Res<ButtonInput<KeyCode>>, mut peeled: ResMut<Peeled>) {
     }
 }
 
-fn hide(peeled: Res<Peeled>, mut skins: Query<&mut Visibility, Or<(With<StrandSkin>, With<JellySkin>)>>) {
+/// Skins that can be taken off.
+type Peelable = Or<(With<StrandSkin>, With<JellySkin>)>;
+
+fn hide(peeled: Res<Peeled>, mut skins: Query<&mut Visibility, Peelable>) {
     let wanted = if peeled.0 { Visibility::Hidden } else { Visibility::Inherited };
     for mut visibility in &mut skins {
         visibility.set_if_neq(wanted);
