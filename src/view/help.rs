@@ -44,7 +44,7 @@ const KEYS: [(&str, &str); 15] = [
 ];
 
 /// Keys that do something only where there is an animal to lead.
-const LEAD: [&str; 4] = ["Click", "← →", "↓ ↑", "Tab"];
+const LEAD: [&str; 4] = ["Click", "Left, Right", "Down, Up", "Tab"];
 
 pub(super) fn plugin(app: &mut App) {
     if !app.is_plugin_added::<EguiPlugin>() {
