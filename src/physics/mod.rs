@@ -10,9 +10,9 @@
 //! every frame    Sync      Shown, FollowParticle: what is drawn, between the last two ticks
 //! ```
 //!
-//! A body is one entity with [`Particles`], [`Springs`](crate::body::Springs), a [`Method`], and whichever of
+//! A body is one entity with [`Particles`], [`Springs`], a [`Method`], and whichever of
 //! [`Muscles`](crate::body::Muscles), [`SpineFriction`](crate::body::SpineFriction), [`Gravity`](crate::body::Gravity) and [`Ground`](crate::body::Ground) it
-//! needs. A body of the six-matrix particle system has [`Rules`](crate::body::Rules) and what they work on in place of springs and a method. Physics adds the rest. Pausing is Bevy's `Time<Virtual>::pause`; a paused app takes exactly one tick after
+//! needs. A body of the six-matrix particle system has [`Rules`] and what they work on in place of springs and a method. Physics adds the rest. Pausing is Bevy's `Time<Virtual>::pause`; a paused app takes exactly one tick after
 //! `Time<Fixed>::accumulate_overstep(timestep)`.
 
 mod clock;
