@@ -17,10 +17,7 @@ use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_m
 use wriggle::{
     body::{Gravity, Ground, MassDamping, Neighbours},
     creatures::{Body, Creature, JellyPlan, NeighboursPlan, Pose, SpringPlan},
-    mechanics::{
-        Advance, BodyParts, Lanes, Model, Real, State, Timeline,
-        integrators::{Method, StickRule},
-    },
+    mechanics::{Advance, BodyParts, Lanes, Model, Real, State, Timeline, integrators::Method},
     physics::{Clock, PhysicsPlugin, Ticks},
     scenes,
 };
@@ -45,22 +42,11 @@ fn block(size: u32, damping: f64) -> Body {
 
 fn parts(body: &Body) -> BodyParts<'_> {
     BodyParts {
-        particles: &body.particles,
-        springs: &body.springs,
-        muscles: None,
-        strand: None,
         lattice: body.block.map(|(lattice, _)| lattice),
-        pull: None,
-        tearing: None,
-        waves: None,
-        guidance: Default::default(),
-        friction: None,
-        coulomb: None,
         gravity: Gravity::new(0.001).ok(),
         ground: Some(&Ground::Flat),
         mass_damping: MassDamping::per_step(0.01).ok(),
-        method: Method::DampedVerlet,
-        stick: StickRule::InStages,
+        ..BodyParts::new(&body.particles, &body.springs, Method::DampedVerlet)
     }
 }
 

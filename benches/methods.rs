@@ -10,10 +10,7 @@ use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use wriggle::{
     body::{Muscles, Particle, ParticleId, Particles, SpineFriction, Spring, Springs},
     creatures::{Creature, GardenWorm, Pose},
-    mechanics::{
-        Advance, BodyParts, Model, State, Timeline,
-        integrators::{Method, StickRule},
-    },
+    mechanics::{Advance, BodyParts, Model, State, Timeline, integrators::Method},
 };
 
 /// The components of a body.
@@ -28,22 +25,9 @@ struct Body {
 impl Body {
     fn parts(&self, method: Method) -> BodyParts<'_> {
         BodyParts {
-            particles: &self.particles,
-            springs: &self.springs,
             muscles: self.muscles.as_ref(),
-            strand: None,
-            lattice: None,
-            pull: None,
-            tearing: None,
-            waves: None,
-            guidance: Default::default(),
             friction: self.friction.as_ref(),
-            coulomb: None,
-            gravity: None,
-            ground: None,
-            mass_damping: None,
-            method,
-            stick: StickRule::InStages,
+            ..BodyParts::new(&self.particles, &self.springs, method)
         }
     }
 

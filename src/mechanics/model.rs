@@ -54,7 +54,29 @@ pub struct BodyParts<'a> {
     pub stick: StickRule,
 }
 
-impl BodyParts<'_> {
+impl<'a> BodyParts<'a> {
+    /// A body of particles and springs, and of nothing else.
+    pub fn new(particles: &'a Particles, springs: &'a Springs, method: Method) -> Self {
+        Self {
+            particles,
+            springs,
+            muscles: None,
+            strand: None,
+            lattice: None,
+            pull: None,
+            tearing: None,
+            waves: None,
+            guidance: Guidance::default(),
+            friction: None,
+            coulomb: None,
+            gravity: None,
+            ground: None,
+            mass_damping: None,
+            method,
+            stick: StickRule::InStages,
+        }
+    }
+
     /// Whether the body lies on a line along x and nothing can move it off: no gravity, no ground, every y and z the same and at rest. One
     /// dimension is enough to step it then.
     pub fn on_axis(&self) -> bool {

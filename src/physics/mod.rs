@@ -12,8 +12,8 @@
 //!
 //! A body is one entity with [`Particles`], [`Springs`], a [`Method`], and whichever of
 //! [`Muscles`](crate::body::Muscles), [`SpineFriction`](crate::body::SpineFriction), [`Gravity`](crate::body::Gravity) and [`Ground`](crate::body::Ground) it
-//! needs. A body of the six-matrix particle system has [`Rules`] and what they work on in place of springs and a method. Physics adds the rest. Pausing is Bevy's `Time<Virtual>::pause`; a paused app takes exactly one tick after
-//! `Time<Fixed>::accumulate_overstep(timestep)`.
+//! needs. A body of the six-matrix particle system has [`Rules`] and what they work on in place of springs and a method. Physics adds the rest.
+//! Pausing is Bevy's `Time<Virtual>::pause`; a paused app takes exactly one tick after `Time<Fixed>::accumulate_overstep(timestep)`.
 
 mod clock;
 mod plan;

@@ -82,22 +82,10 @@ impl Crawler {
         let (particles, springs, muscles) = self.parts();
         let friction = self.friction();
         let body = BodyParts {
-            particles: &particles,
-            springs: &springs,
             muscles: Some(&muscles),
-            strand: None,
-            lattice: None,
-            pull: None,
-            tearing: None,
-            waves: None,
-            guidance: Default::default(),
-            friction: None,
             coulomb: Some(&friction),
-            gravity: None,
-            ground: None,
-            mass_damping: None,
-            method: self.method,
             stick: self.stick,
+            ..BodyParts::new(&particles, &springs, self.method)
         };
         assert!(body.on_axis());
         let dt = 1.0 / (self.frequency * steps_a_cycle as f64);

@@ -10,9 +10,7 @@ use wriggle::{
     },
     lab::limits::{linearised_limit, predicted_limit},
     mechanics::{
-        Advance, BodyParts, Model, State, Timeline, elastic_energy,
-        integrators::{Method, StickRule},
-        kinetic_energy, rest_length,
+        Advance, BodyParts, Model, State, Timeline, elastic_energy, integrators::Method, kinetic_energy, rest_length,
     },
     physics::Clock,
 };
@@ -28,24 +26,7 @@ struct Row {
 
 impl Row {
     fn parts(&self, method: Method) -> BodyParts<'_> {
-        BodyParts {
-            particles: &self.particles,
-            springs: &self.springs,
-            muscles: Some(&self.muscles),
-            strand: None,
-            lattice: None,
-            pull: None,
-            tearing: None,
-            waves: None,
-            guidance: Default::default(),
-            friction: None,
-            coulomb: None,
-            gravity: None,
-            ground: None,
-            mass_damping: None,
-            method,
-            stick: StickRule::InStages,
-        }
+        BodyParts { muscles: Some(&self.muscles), ..BodyParts::new(&self.particles, &self.springs, method) }
     }
 
     /// Takes `steps` from the time of `first`, one by one, and shows the body after each.

@@ -31,11 +31,12 @@ fn the_exercise_is_answered_with_numbers_near_their_theory() {
             (number(&row[4]) / limit - 1.0).abs() < 0.04 && (number(&row[5]) / limit - 1.0).abs() < 0.04,
             "{row:?}"
         );
-        // Damped strongly, what swings along one axis alone stays bounded a little above its linear limit.
-        let damped = if row[0] == "1" { &row[6..8] } else { &row[6..] };
-        for cell in damped {
+        for (column, cell) in row.iter().enumerate().skip(6) {
             let (found, theory) = cell.split_once(" (").unwrap();
-            assert!((number(found) / number(theory.trim_end_matches(')')) - 1.0).abs() < 0.05, "{row:?}");
+            let ratio = number(found) / number(theory.trim_end_matches(')'));
+            // Damped strongly, a block of edges alone rattles within bounds above its linear limit, and up to the end of what is searched.
+            let most = if (row[0].as_str(), column) == ("1", 8) { 1.1 } else { 1.05 };
+            assert!((0.95..most).contains(&ratio), "{ratio}: {row:?}");
         }
     }
 

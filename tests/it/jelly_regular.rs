@@ -6,10 +6,7 @@ use bevy::math::DVec3;
 use wriggle::{
     body::{Gravity, Ground, MassDamping, Neighbours, Particle, ParticleId, Particles, SpringId},
     creatures::{Body, Creature, JellyPlan, NeighboursPlan, Pose, SpringPlan},
-    mechanics::{
-        Advance, BodyParts, Model, State, Timeline,
-        integrators::{Method, StickRule},
-    },
+    mechanics::{Advance, BodyParts, Model, State, Timeline, integrators::Method},
 };
 
 use crate::{
@@ -19,22 +16,11 @@ use crate::{
 
 fn parts(body: &Body, method: Method) -> BodyParts<'_> {
     BodyParts {
-        particles: &body.particles,
-        springs: &body.springs,
-        muscles: None,
-        strand: None,
         lattice: body.block.map(|(lattice, _)| lattice),
-        pull: None,
-        tearing: None,
-        waves: None,
-        guidance: Default::default(),
-        friction: None,
-        coulomb: None,
         gravity: Gravity::new(0.01).ok(),
         ground: Some(&Ground::Flat),
         mass_damping: MassDamping::rate(0.05).ok(),
-        method,
-        stick: StickRule::InStages,
+        ..BodyParts::new(&body.particles, &body.springs, method)
     }
 }
 

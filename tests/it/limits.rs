@@ -4,33 +4,13 @@ use bevy::math::DVec3;
 use wriggle::{
     body::{MassDamping, Particle, ParticleId, Particles, Spring, Springs},
     lab::limits::{growth, limits, linearised_limit, predicted_limit, scene_limit},
-    mechanics::{
-        BodyParts,
-        integrators::{Method, StickRule},
-    },
+    mechanics::{BodyParts, integrators::Method},
 };
 
 use crate::support::Worm;
 
 fn parts<'a>((particles, springs): &'a (Particles, Springs), method: Method) -> BodyParts<'a> {
-    BodyParts {
-        particles,
-        springs,
-        muscles: None,
-        strand: None,
-        lattice: None,
-        pull: None,
-        tearing: None,
-        waves: None,
-        guidance: Default::default(),
-        friction: None,
-        coulomb: None,
-        gravity: None,
-        ground: None,
-        mass_damping: None,
-        method,
-        stick: StickRule::InStages,
-    }
+    BodyParts::new(particles, springs, method)
 }
 
 /// A mass of 1 on a pinned spring of stiffness 1.

@@ -37,6 +37,8 @@ mod saving;
 mod shows;
 mod six_house;
 mod six_matrix;
+mod six_odd;
+mod six_signs;
 mod stability;
 mod steering;
 mod stiffness;

@@ -1,54 +1,54 @@
-//! The six-matrix particle system: its reference figures, the signs that print lost, and the laws that hold whatever the numbers.
+//! The six-matrix particle system: its reference figures, and the laws that hold whatever the numbers.
 
 use bevy::math::DVec3;
 use wriggle::{
-    body::{Bonds, Collisions, Columns, Drive, Particle, Particles, Rule, Rules, Sense},
-    creatures::{Composed, Inchworm, RoadForm, Roller, Rough, RulePlan, Shape, SixBody, Strip},
+    body::{Drive, Particle, Particles, Rule},
+    creatures::{Composed, Inchworm, RoadForm, Roller, Rough, Shape, SixBody, Strip},
     lab::limits::linearised_six_limit,
     mechanics::six_matrix::{
         Burst, Dense, Road, RoadSearch, Scan, SixParts, SixState, Stepper, bond_eigenvalue, look, stability_limit,
     },
 };
 
-const DT: f64 = 0.01;
+pub const DT: f64 = 0.01;
 
 /// A body on a road.
-struct Six {
-    particles: Particles,
-    six: SixBody,
-    road: Option<Road>,
+pub struct Six {
+    pub particles: Particles,
+    pub six: SixBody,
+    pub road: Option<Road>,
 }
 
 impl Six {
     /// A creature with its particles put somewhere.
-    fn new(creature: &Composed, place: impl Fn(DVec3) -> DVec3, road: Option<Road>) -> Self {
+    pub fn new(creature: &Composed, place: impl Fn(DVec3) -> DVec3, road: Option<Road>) -> Self {
         let places: Vec<_> = creature.rest().into_iter().map(place).collect();
         let six = creature.build(&places).unwrap();
         Self { particles: Particles::new(places.into_iter().map(Particle::at)).unwrap(), six, road }
     }
 
     /// Where its own numbers put it, on a strip.
-    fn on_strip(creature: &Composed, strip: RoadForm) -> Self {
+    pub fn on_strip(creature: &Composed, strip: RoadForm) -> Self {
         Self::new(creature, |x| x, Some(strip.build().unwrap()))
     }
 
-    fn on_road(creature: &Composed, form: &RoadForm, road: &Road, row: f64, aside: f64, turn: f64) -> Self {
+    pub fn on_road(creature: &Composed, form: &RoadForm, road: &Road, row: f64, aside: f64, turn: f64) -> Self {
         let pose = creature.pose_on(road, form.station(row), aside, turn).unwrap();
         let rotation = bevy::math::DQuat::from_rotation_y(-pose.heading.to_radians());
         Self::new(creature, |x| rotation * x + pose.at, Some(road.clone()))
     }
 
-    fn parts(&self) -> SixParts<'_> {
+    pub fn parts(&self) -> SixParts<'_> {
         let SixBody { columns, bonds, collisions, rules } = &self.six;
         SixParts { particles: &self.particles, columns, bonds, collisions, rules, road: self.road.as_ref() }
     }
 
-    fn drive(&self) -> &Drive {
+    pub fn drive(&self) -> &Drive {
         self.six.rules.iter().find_map(|rule| if let Rule::Drive(drive) = rule { Some(drive) } else { None }).unwrap()
     }
 
     /// Takes so many steps, and calls `see` before each of them and after the last.
-    fn run(&self, steps: usize, mut see: impl FnMut(usize, &SixState)) -> Result<(), (usize, Burst)> {
+    pub fn run(&self, steps: usize, mut see: impl FnMut(usize, &SixState)) -> Result<(), (usize, Burst)> {
         let parts = self.parts();
         let mut stepper = Stepper::new(&parts);
         for step in 0..steps {
@@ -60,7 +60,7 @@ impl Six {
     }
 
     /// What is measured after so many steps.
-    fn after<T>(&self, steps: usize, measure: impl Fn(&SixState) -> T) -> T {
+    pub fn after<T>(&self, steps: usize, measure: impl Fn(&SixState) -> T) -> T {
         let mut found = None;
         self.run(steps, |step, state| {
             if step == steps {
@@ -72,19 +72,19 @@ impl Six {
     }
 }
 
-fn strip(spacing: f64, x: f64, rows: u32) -> RoadForm {
+pub fn strip(spacing: f64, x: f64, rows: u32) -> RoadForm {
     RoadForm::Strip(Strip { rows, columns: 12, spacing, at: (x, 2.0, 40.0), heading: -90.0, bump: 0.0 })
 }
 
-fn inchworm_strip() -> RoadForm {
+pub fn inchworm_strip() -> RoadForm {
     strip(1.7, 15.0, 150)
 }
 
-fn roller_strip() -> RoadForm {
+pub fn roller_strip() -> RoadForm {
     strip(1.5, 0.0, 150)
 }
 
-fn legs(state: &SixState) -> f64 {
+pub fn legs(state: &SixState) -> f64 {
     state.position[60].distance(state.position[61])
 }
 
@@ -293,127 +293,6 @@ fn the_grid_answers_as_a_scan_of_the_road_does() {
     }
 }
 
-/// How far the inchworm gets in the second cycle, and the least and largest distance of its legs in it.
-fn stroke(inchworm: Inchworm) -> Result<(f64, [f64; 2]), (usize, Burst)> {
-    let (mut at, mut least, mut most) = ([0.0; 2], f64::INFINITY, 0.0_f64);
-    Six::on_strip(&inchworm.composed(), inchworm_strip()).run(4000, |step, state| {
-        if step >= 2000 {
-            (least, most) = (least.min(legs(state)), most.max(legs(state)));
-            at[usize::from(step > 2000)] = state.center().z;
-        }
-    })?;
-    Ok((at[1] - at[0], [least, most]))
-}
-
-#[test]
-fn the_inchworm_walks_only_with_the_restored_signs() {
-    let restored = Inchworm::default();
-    let (way, [least, most]) = stroke(restored).unwrap();
-    assert!((way - 7.6).abs() < 0.2 && least < 11.0 && most > 16.0, "{way}, legs {least} to {most}");
-    // Without either minus sign it hardly contracts.
-    let (way, [least, _]) = stroke(Inchworm { body_step: 0.3, leg_step: 15.3, ..restored }).unwrap();
-    assert!((way - 0.8).abs() < 0.1 && least > 14.0, "{way}, legs from {least}");
-    // With one of them the legs are bound to nothing.
-    for unbound in [Inchworm { body_step: 0.3, ..restored }, Inchworm { leg_step: 15.3, ..restored }] {
-        let (step, burst) = stroke(unbound).unwrap_err();
-        assert!(step < 500 && burst.bond.is_some(), "step {step}: {burst:?}");
-    }
-    // A muscle that pushes forms no arch: it slides.
-    let (way, [least, _]) = stroke(Inchworm { strength: -0.1, ..restored }).unwrap();
-    assert!((way - 3.4).abs() < 0.1 && least > 14.9, "{way}, legs from {least}");
-    // Without the push of the front leg, or pulled back, it gets nowhere.
-    for push in [0.0, -0.2] {
-        let (way, _) = stroke(Inchworm { push, ..restored }).unwrap();
-        assert!(way < 1.3, "push {push}: {way}");
-    }
-    // Legs that flee from what they should seek.
-    for wrong in [Inchworm { seek: -0.5, ..restored }, Inchworm { grip: -1.0, ..restored }] {
-        assert!(stroke(wrong).is_err(), "{wrong:?}");
-    }
-    // The mirror image goes the same way.
-    let mirror = Inchworm { x: -15.0, legs_x: -15.3, ..restored };
-    let mirrored = Six::on_strip(&mirror.composed(), strip(1.7, -15.0, 150)).after(2000, SixState::center);
-    let plain = Six::on_strip(&restored.composed(), inchworm_strip()).after(2000, SixState::center);
-    assert!((mirrored - plain * DVec3::new(-1.0, 1.0, 1.0)).length() < 1e-9, "{mirrored} and {plain}");
-}
-
-#[test]
-fn forces_are_added_per_step_and_not_times_t() {
-    let slow = |six: &mut Six| {
-        six.six.bonds.set_stiffness(DT).unwrap();
-        six.six.collisions.set_stiffness(DT).unwrap();
-    };
-    let worm = Inchworm { strength: 0.1 * DT, seek: 0.5 * DT, push: 0.2 * DT, grip: DT, ..Inchworm::default() };
-    let mut worm = Six::on_strip(&worm.composed(), inchworm_strip());
-    slow(&mut worm);
-    let way = worm.after(2000, |state| state.center().z) - worm.after(0, |state| state.center().z);
-    assert!((0.05..0.3).contains(&way), "creeps {way} a cycle");
-    let roller = Roller { gravity: 0.32 * DT, friction: 0.02 * DT, limit: 10.0 * DT, ..Roller::default() };
-    let mut roller = Six::on_strip(&roller.composed(), roller_strip());
-    slow(&mut roller);
-    let (z, height) = roller.after(750, |state| (state.center().z, state.center().y));
-    assert!(z > 0.0 && height < 3.5, "its wheels collapse: {height} above the strip's 2, at {z}");
-}
-
-#[test]
-fn the_roller_drives_only_with_the_restored_signs() {
-    let restored = Roller::default();
-    let run = |roller: Roller| Six::on_strip(&roller.composed(), roller_strip());
-    let way = |roller: Roller| run(roller).after(1000, |state| state.center().z - roller.z);
-    let plain = way(restored);
-    // Two particles in each of ten places, the other z, and the printed product with ⇒ drive alike.
-    for same in [
-        Roller { rim_angle: 0.2, ..restored },
-        Roller { z: -1.5, ..restored },
-        Roller { sense: Sense::Implied, ..restored },
-    ] {
-        assert!((way(same) - plain).abs() < 0.2, "{same:?}: {} and {plain}", way(same));
-    }
-    let height = run(Roller { gravity: -0.32, ..restored }).after(500, |state| state.center().y);
-    assert!(height > 300.0, "it flies away: {height}");
-    for wrong in [
-        Roller { friction: -0.02, ..restored },
-        Roller { sense: Sense::Reversed, ..restored },
-        Roller { sense: Sense::Printed, ..restored },
-    ] {
-        assert!(run(wrong).run(1000, |_, _| {}).is_err(), "{wrong:?}");
-    }
-    // The axis of the right wheel mirrored literally drives it backwards.
-    let mut mirrored = restored.composed();
-    for rule in &mut mirrored.rules {
-        if let RulePlan::WheelDrive(drive) = rule {
-            let wheel = &mut drive.wheels[1];
-            core::mem::swap(&mut wheel.from, &mut wheel.to);
-        }
-    }
-    assert!(Six::on_strip(&mirrored, roller_strip()).run(1000, |_, _| {}).is_err());
-}
-
-#[test]
-fn beams_go_ahead_and_outwards_only_with_the_restored_signs() {
-    let ahead = |roller: Roller| {
-        let six = Six::on_strip(&roller.composed(), roller_strip());
-        let position: Vec<_> = six.particles.positions().collect();
-        // Where they are a unit below the axle, ahead of it and to its left.
-        look(six.drive(), &position, six.road.as_ref()).beams.map(|beam| {
-            let below = beam.direction / -beam.direction.y;
-            (-below.z, -below.x)
-        })
-    };
-    let [left_front, left_side, right_front, right_side] = ahead(Roller::default());
-    for (found, expected) in
-        [(left_front, (2.22, 0.0)), (right_front, (2.22, 0.0)), (left_side, (2.86, 0.68)), (right_side, (2.86, -0.68))]
-    {
-        let near = (found.0 - expected.0).abs() < 0.01 && (found.1 - expected.1).abs() < 0.01;
-        assert!(near, "{found:?}, expected {expected:?}");
-    }
-    let beams = Roller::default().beams;
-    let back = ahead(Roller { beams: wriggle::body::Beams { lift: 20.0, ..beams }, ..Roller::default() });
-    assert!(back.iter().all(|(ahead, _)| *ahead < 0.0), "{back:?}");
-    let inwards = ahead(Roller { beams: wriggle::body::Beams { down: -20.0, ..beams }, ..Roller::default() });
-    assert!(inwards[1].1 < 0.0 && inwards[3].1 > 0.0, "{inwards:?}");
-}
-
 #[test]
 fn only_the_undermost_rim_particles_touch_a_flat_strip() {
     let roller = Six::on_strip(&Roller::default().composed(), roller_strip());
@@ -509,94 +388,4 @@ fn a_mirrored_roller_takes_mirrored_decisions() {
         seen.insert(a.decision());
     }
     assert!(seen.contains("only left side beam"), "{seen:?}");
-}
-
-/// A body of particles and rules without a plan.
-fn bare(places: &[DVec3], bound: impl Fn(usize, usize) -> bool, rules: Vec<Rule>, road: Option<Road>) -> Six {
-    let count = places.len();
-    Six {
-        particles: Particles::new(places.iter().map(|x| Particle::at(*x))).unwrap(),
-        six: SixBody {
-            columns: Columns::new(places.iter().map(|x| (0.95, *x))).unwrap(),
-            bonds: Bonds::new(places.to_vec(), bound),
-            collisions: Collisions::new(count, |i, j| i != j),
-            rules: Rules::new(rules, count).unwrap(),
-        },
-        road,
-    }
-}
-
-#[test]
-fn particles_in_the_same_place_leave_each_other_alone() {
-    let places = [DVec3::ZERO, DVec3::ZERO, DVec3::new(0.0, 3.0, 0.0)];
-    let road = Road::new(vec![DVec3::ZERO], Vec::new()).unwrap();
-    let six = bare(&places, |i, j| i != j, Vec::new(), Some(road));
-    six.run(200, |_, state| {
-        assert!(state.position.iter().all(|x| x.is_finite()));
-        assert_eq!(state.position[0], state.position[1]);
-    })
-    .unwrap();
-}
-
-#[test]
-fn roads_of_one_particle_and_of_none_are_roads() {
-    let leg = wriggle::body::Leg {
-        particle: wriggle::body::ParticleId(0),
-        // Whose memory stays (0, 0, 0): the leg is free.
-        clock: wriggle::body::ParticleId(1),
-        free: wriggle::body::Free::Contracting,
-        seek: 0.5,
-        push: 0.0,
-        from: wriggle::body::ParticleId(0),
-        grip: 1.0,
-    };
-    let run = |road: Option<Vec<DVec3>>, from: DVec3| {
-        let road = road.map(|points| Road::new(points, Vec::new()).unwrap());
-        let places = [from, DVec3::new(0.0, -500.0, 0.0)];
-        bare(&places, |_, _| false, vec![Rule::Leg(leg)], road).after(3000, |state| state.position[0])
-    };
-    // A leg is drawn to the one particle from however far, and comes to rest near it, pushed off and drawn on.
-    for from in [DVec3::new(1.0, 1.0, 0.0), DVec3::new(300.0, 40.0, 0.0)] {
-        let distance = run(Some(vec![DVec3::ZERO]), from).length();
-        assert!((1.0..2.0).contains(&distance), "{distance}");
-    }
-    // Without a road it is drawn nowhere.
-    let from = DVec3::new(3.0, 1.0, 0.0);
-    assert_eq!(run(None, from), from);
-    assert_eq!(run(Some(Vec::new()), from), from);
-    // A roller over no road sees none, brakes and falls.
-    let creature = Roller::default().composed();
-    for road in [None, Some(Road::new(Vec::new(), Vec::new()).unwrap())] {
-        let roller = Six::new(&creature, |x| x, road);
-        let position: Vec<_> = roller.particles.positions().collect();
-        assert_eq!(look(roller.drive(), &position, roller.road.as_ref()).goals, (-1.0, -1.0));
-        assert!(roller.after(300, |state| state.center().y) < -50.0);
-    }
-}
-
-/// A straight road of a hundred particles a row, how many bytes it takes a particle, and how far the roller gets on it in 100 steps.
-fn wide(rows: u32) -> (f64, f64) {
-    let form =
-        RoadForm::Strip(Strip { rows, columns: 100, spacing: 1.5, at: (0.0, 2.0, 40.0), heading: -90.0, bump: 0.0 });
-    let road = form.build().unwrap();
-    let bytes = road.bytes() as f64 / road.points().len() as f64;
-    let roller = Six::new(&Roller::default().composed(), |x| x, Some(road));
-    (bytes, roller.after(100, |state| state.center().z))
-}
-
-#[test]
-fn memory_grows_with_the_road_and_with_nothing_else() {
-    for rows in [60, 600] {
-        let (bytes, z) = wide(rows);
-        assert!(bytes < 250.0, "{rows} rows: {bytes} bytes a particle");
-        assert!((z + 0.42).abs() < 0.01, "it drives as on a short strip: {z}");
-    }
-}
-
-#[test]
-#[ignore = "takes long unoptimised: cargo test --release --no-default-features --test it a_road_of_a_million -- --ignored --nocapture"]
-fn a_road_of_a_million_particles_takes_no_more_for_each() {
-    let (bytes, z) = wide(10_000);
-    println!("{bytes:.0} bytes a particle");
-    assert!(bytes < 250.0 && (z + 0.42).abs() < 0.01, "{bytes}, {z}");
 }

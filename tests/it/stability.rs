@@ -3,10 +3,7 @@
 use bevy::math::DVec3;
 use wriggle::{
     body::{Gravity, Particle, ParticleId, Particles, Spring, Springs},
-    mechanics::{
-        BodyParts,
-        integrators::{Method, StickRule},
-    },
+    mechanics::{BodyParts, integrators::Method},
     physics::Plan,
 };
 
@@ -101,24 +98,7 @@ fn the_bound_is_the_true_limit_of_a_long_chain_and_safe_for_unequal_masses() {
         (particles, springs)
     };
     let limit = |(particles, springs): &(Particles, Springs)| {
-        let parts = BodyParts {
-            particles,
-            springs,
-            muscles: None,
-            strand: None,
-            lattice: None,
-            pull: None,
-            tearing: None,
-            waves: None,
-            guidance: Default::default(),
-            friction: None,
-            coulomb: None,
-            gravity: None,
-            ground: None,
-            mass_damping: None,
-            method: Method::SemiImplicitEuler,
-            stick: StickRule::InStages,
-        };
+        let parts = BodyParts::new(particles, springs, Method::SemiImplicitEuler);
         parts.stability_limit(0.0)
     };
     // ω_max = 2√(k/m)·cos(π/2n).

@@ -3,10 +3,7 @@
 use bevy::{math::DVec3, prelude::*, time::TimeUpdateStrategy};
 use wriggle::{
     body::{Muscle, Muscles, Particle, ParticleId, Particles, SpineFriction, Spring, SpringId, Springs, Wave},
-    mechanics::{
-        BodyParts,
-        integrators::{Method, StickRule},
-    },
+    mechanics::{BodyParts, integrators::Method},
     physics::{Clock, PhysicsPlugin},
 };
 
@@ -86,22 +83,9 @@ pub struct Body {
 impl Body {
     pub fn parts(&self) -> BodyParts<'_> {
         BodyParts {
-            particles: &self.particles,
-            springs: &self.springs,
             muscles: Some(&self.muscles),
-            strand: None,
-            lattice: None,
-            pull: None,
-            tearing: None,
-            waves: None,
-            guidance: Default::default(),
             friction: Some(&self.friction),
-            coulomb: None,
-            gravity: None,
-            ground: None,
-            mass_damping: None,
-            method: self.method,
-            stick: StickRule::InStages,
+            ..BodyParts::new(&self.particles, &self.springs, self.method)
         }
     }
 

@@ -9,11 +9,7 @@ use super::ExerciseOptions;
 use crate::{
     body::{BodyError, Gravity, Ground, MassDamping, Neighbours, Particle, ParticleId},
     creatures::{Body, Creature, JellyPlan, NeighboursPlan, Pose, Rotation, SpringPlan},
-    mechanics::{
-        Advance, BodyParts, Model, State, Timeline,
-        integrators::{Method, StickRule},
-        metrics::BlockShape,
-    },
+    mechanics::{Advance, BodyParts, Model, State, Timeline, integrators::Method, metrics::BlockShape},
 };
 
 /// The kinds of blocks that the exercise asks for, with names.
@@ -100,22 +96,11 @@ impl Block {
 
     pub(super) fn parts(&self) -> BodyParts<'_> {
         BodyParts {
-            particles: &self.body.particles,
-            springs: &self.body.springs,
-            muscles: None,
-            strand: None,
             lattice: self.body.block.map(|(lattice, _)| lattice),
-            pull: None,
-            tearing: None,
-            waves: None,
-            guidance: Default::default(),
-            friction: None,
-            coulomb: None,
             gravity: Gravity::new(GRAVITY).ok().filter(|_| self.falls),
             ground: self.falls.then_some(&Ground::Flat),
             mass_damping: self.damping,
-            method: self.method,
-            stick: StickRule::default(),
+            ..BodyParts::new(&self.body.particles, &self.body.springs, self.method)
         }
     }
 
