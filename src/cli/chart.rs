@@ -13,7 +13,7 @@ use super::{CliError, Outcome};
 use crate::{
     creatures::library::{self, SCENE},
     lab::{
-        Gallery, GalleryError, LabError, Problem, StiffnessStudy, SweepOptions, WorkPrecision, chart::stiffness,
+        Gallery, GalleryError, LabError, Problem, StiffnessStudy, SweepOptions, Truth, WorkPrecision, chart::stiffness,
         factors, measure, resumed_sweep, stiffness_study, study_stem,
     },
     mechanics::integrators::Method,
@@ -65,7 +65,13 @@ pub(super) fn chart(arguments: &ChartArguments) -> Result<Outcome, CliError> {
         let how = if is_new { "measured" } else { "measured before" };
         let file = gallery.file(name, "svg");
         writeln!(out, "{name}: {} runs, {how}; {}", chart.points.len(), file.display()).map_err(CliError::stdout)?;
-        let (study, how) = studied(&problem, &options, &gallery, &key)?;
+        let (study, how) = match studied(&problem, &options, &gallery, &key) {
+            Err(CliError::Lab(error @ LabError::Unsupported { .. })) => {
+                eprintln!("{error}; what its stiffness costs is not studied");
+                continue;
+            }
+            study => study?,
+        };
         let (verdict, file) = (stiffness::verdict(&study), gallery.file(&study_stem(name), "svg"));
         writeln!(out, "{name}: {verdict} {how}; {}", file.display()).map_err(CliError::stdout)?;
     }
@@ -102,12 +108,12 @@ fn loaded(names: &[String]) -> Result<BTreeMap<String, LoadedScene>, CliError> {
 
 /// What a chart depends on: a chart is measured again when this has changed.
 fn key(problem: &Problem, options: &SweepOptions) -> String {
-    let Problem { title, setting, time_scale, budget, .. } = problem;
+    let Problem { title, setting, time_scale, budget, gait_speed, .. } = problem;
     let methods = Method::ALL.map(Method::name).join(" ");
     let version = env!("CARGO_PKG_VERSION");
     let quick = options.quick;
     format!(
-        "{:032x} {title:?} {setting:?} scale {time_scale} budget {budget} quick {quick} {methods} {version}",
+        "{:032x} {title:?} {setting:?} scale {time_scale} budget {budget} {gait_speed:?} quick {quick} {methods} {version}",
         problem.hash()
     )
 }
@@ -121,7 +127,7 @@ fn measured(
     let bar = progress(&problem.name);
     bar.set_message("reference");
     bar.tick();
-    let reference = options.cache.reference(problem)?;
+    let truth = Truth::of(problem, &options.cache)?;
     let mut partial = gallery.partial(&problem.name, key)?;
     if !partial.is_empty() {
         bar.suspend(|| eprintln!("{}: going on after {} runs", problem.name, partial.len()));
@@ -129,12 +135,12 @@ fn measured(
     let mut point = |setting| match partial.known(setting) {
         Some(point) => Ok(point),
         None => {
-            let point = measure(problem, &reference, setting, options.repeats());
+            let point = measure(problem, &truth, setting, options.repeats());
             partial.push(point)?;
             Ok::<_, GalleryError>(point)
         }
     };
-    let chart = resumed_sweep(problem, &reference, options, &mut point, &mut |done, all, what| {
+    let chart = resumed_sweep(problem, &truth, options, &mut point, &mut |done, all, what| {
         bar.set_length(all as u64);
         bar.set_position(done as u64);
         bar.set_message(what.to_owned());

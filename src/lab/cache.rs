@@ -1,7 +1,7 @@
-//! References that were computed before, in files.
+//! References and speeds of gaits that were computed before, in files.
 //!
-//! A file holds the format's name and version, the problem's hash, the reference and a checksum over all of it. A file that is damaged, cut off or
-//! of another version counts as none: the reference is computed again and the file written anew.
+//! A file holds the format's name and version, the problem's hash, what was computed and a checksum over all of it. A file that is damaged, cut off or
+//! of another version counts as none: it is computed again and the file written anew.
 
 use std::{env, fs, io::Write, path::PathBuf};
 
@@ -10,10 +10,12 @@ use directories::ProjectDirs;
 
 use crate::body::ParticleId;
 
-use super::{LabError, Problem, Reference, StickSlip, hash::Fnv};
+use super::{GaitSpeeds, LabError, Problem, Reference, StickSlip, hash::Fnv};
 
-/// The beginning of every file. The number changes with the format and with what references are made of.
+/// The beginning of every reference. The number changes with the format and with what references are made of.
 const HEAD: &[u8] = b"wriggle reference 1\n";
+/// The beginning of every file of speeds. The number changes with the format and with how they are found.
+const SPEEDS: &[u8] = b"wriggle gait speeds 1\n";
 /// The folder that is used instead of the platform's.
 const VARIABLE: &str = "WRIGGLE_CACHE";
 
@@ -52,17 +54,50 @@ impl Cache {
     /// As [`Reference::solve`].
     pub fn reference(&self, problem: &Problem) -> Result<Reference, LabError> {
         let file = self.file(problem);
-        let kept = file.as_ref().and_then(|file| fs::read(file).ok()).and_then(|bytes| read(problem, &bytes));
-        if let Some(reference) = kept {
-            return Ok(reference);
-        }
-        let reference = Reference::solve(problem)?;
-        if let Some(file) = file {
-            // Without it the reference is computed again: slower, and not wrong.
-            let _ = write(&file, &bytes(problem, &reference));
-        }
-        Ok(reference)
+        kept(file, |bytes| read(problem, bytes), |reference| bytes(problem, reference), || Reference::solve(problem))
     }
+
+    /// The speeds of the gaits of a problem: those that are kept, or else they are computed and kept. That they cannot be kept is no error.
+    ///
+    /// # Errors
+    /// As [`GaitSpeeds::solve`].
+    pub fn gait_speeds(&self, problem: &Problem) -> Result<GaitSpeeds, LabError> {
+        // They depend on the scene's own step too, in parts of which they are found.
+        let (hash, dt) = (problem.hash(), problem.setting.dt);
+        let mut head = SPEEDS.to_vec();
+        head.extend(hash.to_le_bytes());
+        head.extend(dt.to_le_bytes());
+        let file = self.folder.as_ref().map(|folder| folder.join(format!("{hash:032x}-{:016x}.speeds", dt.to_bits())));
+        let read = |bytes: &[u8]| {
+            let mut rest = whole_file(bytes)?.strip_prefix(&head[..])?;
+            let error = number(&mut rest)?;
+            let speeds = problem.bodies.iter().map(|_| number(&mut rest)).collect::<Option<_>>()?;
+            rest.is_empty().then_some(GaitSpeeds { speeds, error })
+        };
+        let bytes = |found: &GaitSpeeds| {
+            let numbers = core::iter::once(&found.error).chain(&found.speeds);
+            with_checksum(head.iter().copied().chain(numbers.flat_map(|number| number.to_le_bytes())).collect())
+        };
+        kept(file, read, bytes, || GaitSpeeds::solve(problem))
+    }
+}
+
+/// What a file keeps, or else what is solved, which is kept then.
+fn kept<T>(
+    file: Option<PathBuf>,
+    read: impl Fn(&[u8]) -> Option<T>,
+    bytes: impl Fn(&T) -> Vec<u8>,
+    solve: impl Fn() -> Result<T, LabError>,
+) -> Result<T, LabError> {
+    if let Some(known) = file.as_ref().and_then(|file| fs::read(file).ok()).and_then(|bytes| read(&bytes)) {
+        return Ok(known);
+    }
+    let solved = solve()?;
+    if let Some(file) = file {
+        // Without it it is computed again: slower, and not wrong.
+        let _ = write(&file, &bytes(&solved));
+    }
+    Ok(solved)
 }
 
 /// Writes a file beside its place and then moves it there, so that nobody ever reads half of it.
@@ -89,8 +124,18 @@ fn bytes(problem: &Problem, reference: &Reference) -> Vec<u8> {
     for vector in reference.positions.iter().chain(&reference.velocities).flatten() {
         bytes.extend(vector.to_array().into_iter().flat_map(f64::to_le_bytes));
     }
+    with_checksum(bytes)
+}
+
+fn with_checksum(mut bytes: Vec<u8>) -> Vec<u8> {
     bytes.extend(checksum(&bytes).to_le_bytes());
     bytes
+}
+
+/// A file without its checksum, unless it is damaged.
+fn whole_file(bytes: &[u8]) -> Option<&[u8]> {
+    let (bytes, sum) = bytes.split_last_chunk::<16>()?;
+    (checksum(bytes) == u128::from_le_bytes(*sum)).then_some(bytes)
 }
 
 fn checksum(bytes: &[u8]) -> u128 {
@@ -101,9 +146,7 @@ fn checksum(bytes: &[u8]) -> u128 {
 
 /// The reference in a file, unless something is wrong with it.
 fn read(problem: &Problem, bytes: &[u8]) -> Option<Reference> {
-    let (bytes, sum) = bytes.split_last_chunk::<16>()?;
-    (checksum(bytes) == u128::from_le_bytes(*sum)).then_some(())?;
-    let mut rest = bytes.strip_prefix(HEAD)?.strip_prefix(&problem.hash().to_le_bytes()[..])?;
+    let mut rest = whole_file(bytes)?.strip_prefix(HEAD)?.strip_prefix(&problem.hash().to_le_bytes()[..])?;
     let error = number(&mut rest)?;
     let mut events = Vec::new();
     for _ in 0..whole(&mut rest)? {

@@ -9,8 +9,8 @@ use serde::Serialize;
 use crate::mechanics::integrators::{Method, StickRule};
 
 use super::{
-    LabError, Problem, Reference, Setting, Truth,
-    run::{errors, stepping, steps_to, stick_matters},
+    LabError, Problem, Setting, Truth, Unit,
+    run::{stepping, steps_to, stick_matters},
     sweep::{DOCUMENT, work},
 };
 
@@ -46,15 +46,6 @@ pub struct Choice {
     pub frontier: Vec<Candidate>,
     /// How far the reference is from what confirms it.
     pub reference_error: f64,
-}
-
-/// What an error is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-pub enum Unit {
-    /// The distance of a particle from where it should be.
-    Length,
-    /// A part of the speed of a gait.
-    PartOfSpeed,
 }
 
 /// How far to look.
@@ -102,10 +93,7 @@ pub fn choose(
     search: Search,
     progress: &mut dyn FnMut(usize, usize, &str),
 ) -> Result<Choice, LabError> {
-    let (unit, budget) = match problem.gait_speed {
-        Some(part) => (Unit::PartOfSpeed, part),
-        None => (Unit::Length, problem.budget),
-    };
+    let (unit, budget) = (truth.unit(), truth.budget(problem));
     let judge = Judge { problem, truth, budget, evaluation: seconds_an_evaluation(problem) };
     let mut methods: Vec<_> = Method::ALL.into_iter().filter(|method| truth.may_judge(*method)).collect();
     // Those that are likely to be cheap come first, so that the others need not be followed far.
@@ -147,25 +135,28 @@ fn follow(
 ) {
     /// Nobody waits for more spring updates in one run.
     const MOST_WORK: f64 = 1e9;
-    /// Frontiers end at so much of the budget.
-    const LITTLE: f64 = 1e-3;
     /// After two octaves of steps beaten by far, smaller ones will not change that.
     const HOPELESS: usize = 8;
     /// Beaten by far: a cheaper candidate has so much less of an error.
     const FAR: f64 = 4.0;
     let budget = judge.budget;
+    // Frontiers end at so much of the budget. Speeds are told by a method that is not much more exact than those that it judges.
+    let little = match judge.truth.unit() {
+        Unit::Length => 1e-3,
+        Unit::PartOfSpeed => 0.1,
+    };
     let mut beaten = 0;
     for &dt in steps {
         let setting = Setting { method, stick, dt };
         if work(judge.problem, method, dt) > MOST_WORK {
             return;
         }
-        if search == Search::Cheapest
-            && cheapest(candidates, budget).is_some_and(|best| judge.cost(setting) > best.cost)
-        {
+        let cost = judge.cost(setting);
+        let is_dear = || cheapest(candidates, budget).is_some_and(|best| cost > best.cost);
+        if search == Search::Cheapest && is_dear() {
             return;
         }
-        let candidate = judge.candidate(setting);
+        let candidate = Candidate { setting, error: judge.error(setting), cost };
         let by_far = |other: &Candidate| {
             other.cost <= candidate.cost
                 && other.error.is_some_and(|least| candidate.error.is_none_or(|error| error >= FAR * least))
@@ -178,7 +169,7 @@ fn follow(
         let enough = match search {
             Search::Cheapest => budget,
             // Nothing can be said of errors that the truth itself may have.
-            Search::Frontier => judge.truth.error().max(LITTLE * budget),
+            Search::Frontier => judge.truth.error().max(little * budget),
         };
         if candidate.error.is_some_and(|error| error <= enough) {
             return;
@@ -208,16 +199,12 @@ fn rounded_down(dt: f64) -> f64 {
     format!("{:.1e}", (dt / unit + 1e-9).floor() * unit).parse().unwrap_or(dt)
 }
 
-/// The largest error of any position over the step and 0.9 and 0.8 of it; `None` where one of them blows up.
-pub(super) fn worst_error(problem: &Problem, reference: &Reference, setting: Setting) -> Option<f64> {
-    worst(setting, |setting| Some(errors(problem, reference, setting)?.largest))
-}
-
-/// The largest error over a step and 0.9 and 0.8 of it; `None` where one of them blows up.
-fn worst(setting: Setting, error: impl Fn(Setting) -> Option<f64>) -> Option<f64> {
-    [1.0, 0.9, 0.8]
-        .into_iter()
-        .try_fold(0.0, |worst, part| Some(f64::max(worst, error(Setting { dt: part * setting.dt, ..setting })?)))
+/// The largest error over the step and 0.9 and 0.8 of it; `None` where one of them blows up.
+pub(super) fn worst_error(problem: &Problem, truth: &Truth, setting: Setting) -> Option<f64> {
+    [1.0, 0.9, 0.8].into_iter().try_fold(0.0, |worst, part| {
+        let errors = truth.errors_of(problem, Setting { dt: part * setting.dt, ..setting })?;
+        Some(f64::max(worst, errors.largest))
+    })
 }
 
 /// What candidates are judged with.
@@ -231,16 +218,25 @@ struct Judge<'a> {
 
 impl Judge<'_> {
     fn candidate(&self, setting: Setting) -> Candidate {
-        let error = worst(setting, |setting| self.truth.error_of(self.problem, setting));
-        Candidate { setting, error, cost: self.cost(setting) }
+        Candidate { setting, error: self.error(setting), cost: self.cost(setting) }
+    }
+
+    fn error(&self, setting: Setting) -> Option<f64> {
+        worst_error(self.problem, self.truth, setting)
     }
 
     fn cost(&self, setting: Setting) -> f64 {
+        /// So many steps can be timed.
+        const LEAST_TIMED: u64 = 200;
         let steps = steps_to(self.problem.duration, setting.dt);
         match setting.method.about().evaluations {
             Some(_) if setting.stick == StickRule::Located => stepping(self.problem, setting, steps).1 as f64,
             Some(evaluations) => (steps * evaluations) as f64 * self.problem.bodies.len() as f64,
-            None => least_seconds(self.problem, setting, steps) / self.evaluation,
+            None => {
+                // A cycle tells what a step costs: a run lasts ten.
+                let timed = steps.min((steps / 10).max(LEAST_TIMED));
+                least_seconds(self.problem, setting, timed) / self.evaluation * (steps as f64 / timed as f64)
+            }
         }
     }
 }

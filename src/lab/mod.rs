@@ -22,14 +22,14 @@ mod table;
 mod truth;
 
 pub use cache::Cache;
-pub use choose::{Candidate, Choice, Search, Unit, cheapest, choose, frontier};
+pub use choose::{Candidate, Choice, Search, cheapest, choose, frontier};
 pub use error::LabError;
 pub use gait::GaitSpeeds;
 pub use gallery::{Gallery, GalleryError, study_stem};
 pub use page::page;
 pub use partial::Partial;
 pub use problem::{Problem, ProblemBody};
-pub use record::{Errors, Point, Setting, WorkPrecision};
+pub use record::{Errors, Point, Setting, Unit, WorkPrecision};
 pub use reference::{Reference, StickSlip};
 pub use run::measure;
 pub use stiffness::{

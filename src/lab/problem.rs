@@ -149,11 +149,9 @@ impl ProblemBody {
             hash.numbers(&[friction.drag(), friction.grip(), friction.isotropic()]);
         }
         hash.number(self.gravity.map_or(0.0, Gravity::acceleration));
-        // No reference knows Coulomb friction; it must not be taken for a body without it.
-        hash.whole(u64::from(self.coulomb.is_some()));
-        // Nor does it know strands and grounds.
-        hash.whole(u64::from(self.strand.is_some()));
-        hash.whole(u64::from(self.ground.is_some()));
+        // What only some bodies have, by its debug form, which has every digit.
+        let Self { strand, lattice, waves, coulomb, ground, .. } = self;
+        hash.bytes(format!("{strand:?} {lattice:?} {waves:?} {coulomb:?} {ground:?}").as_bytes());
         hash.number(self.tearing.as_ref().map_or(f64::INFINITY, Tearing::strain));
         hash.number(self.mass_damping.map_or(0.0, |damping| damping.rate_at(1.0)));
     }

@@ -15,14 +15,23 @@ pub struct Setting {
     pub dt: f64,
 }
 
-/// How far a run was from the reference: largest over all bodies and all shared times.
+/// What an error is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Unit {
+    /// The distance of a particle from where it should be.
+    Length,
+    /// A part of the speed of a gait.
+    PartOfSpeed,
+}
+
+/// How far a run was from the truth: largest over all bodies and, of positions, over all shared times.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Errors {
-    /// Of the position of any particle (lengths).
+    /// Of the position of any particle (lengths), or of the speed of any gait (as a part of it).
     pub largest: f64,
-    /// Root mean square over particles and shared times (lengths).
+    /// Root mean square over particles and shared times, or over gaits.
     pub rms: f64,
-    /// Of the way of the centre of mass at the end (lengths).
+    /// Of the way of the centre of mass at the end, or of that over the last cycles of a gait (lengths).
     pub distance: f64,
 }
 
@@ -61,11 +70,13 @@ pub struct WorkPrecision {
     pub limits: Vec<(Method, f64)>,
     /// The scene's own setting.
     pub setting: Setting,
-    /// The error that the scene can afford (lengths).
+    /// What an error is.
+    pub unit: Unit,
+    /// The error that the scene can afford, in that unit.
     pub budget: f64,
     /// What the reference is and what confirms it, in words.
     pub reference: String,
-    /// How far the reference is from what confirms it (lengths).
+    /// How far the reference is from what confirms it, in the unit of errors.
     pub reference_error: f64,
     /// Processor and commit, in words.
     pub machine: String,

@@ -10,20 +10,20 @@ use crate::mechanics::{
     integrators::{Method, StickRule},
 };
 
-use super::{Errors, Point, Problem, ProblemBody, Reference, Setting};
+use super::{Errors, Point, Problem, ProblemBody, Reference, Setting, Truth};
 
 /// A rest of a step that is a rounding error.
 const ROUNDING: f64 = 1e-9;
 
-/// Runs a problem once to see how far it is from the reference, and then again as often as `repeats` says to see how long it takes.
+/// Runs a problem once to see how far it is from the truth, and then again as often as `repeats` says to see how long it takes.
 ///
 /// A shared time that no step ends at is met by one shorter step from the last step before it, which the run itself does not see. Only stepping is
 /// timed: all bodies one after the other on one thread, after a run that warms up. Runs that take long are repeated less often, three times
 /// at least; those that blow up are not.
-pub fn measure(problem: &Problem, reference: &Reference, setting: Setting, repeats: usize) -> Point {
+pub fn measure(problem: &Problem, truth: &Truth, setting: Setting, repeats: usize) -> Point {
     /// How long a point may take.
     const LONGEST: Duration = Duration::from_secs(10);
-    let errors = errors(problem, reference, setting);
+    let errors = truth.errors_of(problem, setting);
     let steps = steps_to(problem.duration, setting.dt);
     let started = Instant::now();
     let (warm_up, evaluations) = stepping(problem, setting, steps);

@@ -8,7 +8,7 @@ use crate::{
 };
 
 use super::{
-    Cache, LabError, Point, Problem, Reference, Setting, WorkPrecision,
+    Cache, LabError, Point, Problem, Setting, Truth, Unit, WorkPrecision,
     machine::machine,
     run::{measure, steps_to, stick_matters},
 };
@@ -43,13 +43,13 @@ impl SweepOptions {
     }
 }
 
-/// Runs every method over its steps and compares with the reference. Methods that let friction act in their stages are run once more with friction at
+/// Runs every method over its steps and compares with the truth of the scene's budget, but for the one that tells the truth of speeds. Methods that let friction act in their stages are run once more with friction at
 /// the end of the step, where that makes a difference. The setting of the scene and that of the document are among the points. `progress` hears
 /// after every point how many of how many are done and what comes next or is left out; left out are runs of more than a thousand million spring
 /// updates (a hundred million in a quick sweep).
 ///
 /// # Errors
-/// If the scene has no reference; see [`Reference::solve`].
+/// If the truth cannot be had; see [`Truth::of`].
 pub fn work_precision(
     scene: &LoadedScene,
     options: &SweepOptions,
@@ -57,19 +57,19 @@ pub fn work_precision(
 ) -> Result<WorkPrecision, LabError> {
     let problem = Problem::of(scene)?;
     progress(0, 1, "reference");
-    let reference = options.cache.reference(&problem)?;
-    Ok(sweep(&problem, &reference, options, progress))
+    let truth = Truth::of(&problem, &options.cache)?;
+    Ok(sweep(&problem, &truth, options, progress))
 }
 
-/// As [`work_precision`], of a problem whose reference is known.
+/// As [`work_precision`], of a problem whose truth is known.
 pub fn sweep(
     problem: &Problem,
-    reference: &Reference,
+    truth: &Truth,
     options: &SweepOptions,
     progress: &mut dyn FnMut(usize, usize, &str),
 ) -> WorkPrecision {
-    let measure = &mut |setting| Ok::<_, Infallible>(measure(problem, reference, setting, options.repeats()));
-    let Ok(chart) = resumed_sweep(problem, reference, options, measure, progress);
+    let measure = &mut |setting| Ok::<_, Infallible>(measure(problem, truth, setting, options.repeats()));
+    let Ok(chart) = resumed_sweep(problem, truth, options, measure, progress);
     chart
 }
 
@@ -79,12 +79,12 @@ pub fn sweep(
 /// The first one of `measure`.
 pub fn resumed_sweep<E>(
     problem: &Problem,
-    reference: &Reference,
+    truth: &Truth,
     options: &SweepOptions,
     measure: &mut dyn FnMut(Setting) -> Result<Point, E>,
     progress: &mut dyn FnMut(usize, usize, &str),
 ) -> Result<WorkPrecision, E> {
-    let plan = plan(problem, options, progress);
+    let plan = plan(problem, truth, options, progress);
     let mut points: Vec<Point> = Vec::with_capacity(plan.len());
     for (done, &setting) in plan.iter().enumerate() {
         progress(done, plan.len(), &format!("{} with dt {}", setting.method.name(), setting.dt));
@@ -99,9 +99,10 @@ pub fn resumed_sweep<E>(
         points,
         limits: Method::ALL.map(|method| (method, problem.stability_limit(method, StickRule::InStages))).into(),
         setting: problem.setting,
-        budget: problem.budget,
-        reference: Reference::WORDS.into(),
-        reference_error: reference.error(),
+        unit: truth.unit(),
+        budget: truth.budget(problem),
+        reference: truth.words().into(),
+        reference_error: truth.error(),
         machine: machine(),
     })
 }
@@ -111,12 +112,20 @@ pub(super) const DOCUMENT: Setting =
     Setting { method: Method::SemiImplicitEuler, stick: StickRule::InStages, dt: DOCUMENT_DT };
 
 /// All settings, method by method and from the largest step down.
-fn plan(problem: &Problem, options: &SweepOptions, progress: &mut dyn FnMut(usize, usize, &str)) -> Vec<Setting> {
+fn plan(
+    problem: &Problem,
+    truth: &Truth,
+    options: &SweepOptions,
+    progress: &mut dyn FnMut(usize, usize, &str),
+) -> Vec<Setting> {
+    // Of gaits on the ground the document does not speak.
+    let document = Some(DOCUMENT).filter(|_| truth.unit() == Unit::Length);
     let mut plan = Vec::new();
-    for method in Method::ALL {
+    for method in Method::ALL.into_iter().filter(|method| truth.may_judge(*method)) {
         for stick in StickRule::ALL {
-            let own: Vec<_> = [DOCUMENT, problem.setting]
+            let own: Vec<_> = document
                 .into_iter()
+                .chain([problem.setting])
                 .filter(|own| (own.method, own.stick) == (method, stick))
                 .collect();
             let ladder = ladder(problem, method, stick, options);

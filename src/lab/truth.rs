@@ -2,9 +2,11 @@
 
 use crate::mechanics::integrators::Method;
 
-use super::{Cache, GaitSpeeds, LabError, Problem, Reference, Setting, run::errors};
+use super::{Cache, Errors, GaitSpeeds, LabError, Problem, Reference, Setting, Unit, run::errors};
 
 /// What is asked of a method in a scene, as the scene's error budget says.
+///
+/// A chart of positions shows how methods follow one motion; on the ground, where contacts are located by none, it shows how fast they let the animals go.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Truth {
     /// All positions, in lengths.
@@ -17,10 +19,20 @@ impl Truth {
     /// What the budget of a problem asks for; a reference may come out of the cache.
     ///
     /// # Errors
-    /// If it cannot be had.
+    /// If it cannot be had, or small steps tell speeds that are farther apart than the budget.
     pub fn of(problem: &Problem, cache: &Cache) -> Result<Self, LabError> {
         Ok(match problem.gait_speed {
-            Some(_) => Self::Speeds(GaitSpeeds::solve(problem)?),
+            Some(budget) => {
+                let speeds = cache.gait_speeds(problem)?;
+                if speeds.error() > budget {
+                    let what = format!(
+                        "gaits whose speeds change by {:.2} % when steps that are small become twice as large",
+                        100.0 * speeds.error()
+                    );
+                    return Err(LabError::Unsupported { scene: problem.name.clone(), what });
+                }
+                Self::Speeds(speeds)
+            }
             None => Self::Positions(cache.reference(problem)?),
         })
     }
@@ -33,15 +45,39 @@ impl Truth {
         }
     }
 
-    /// The error of a run; nothing where it blows up or its method refuses a step.
-    pub(super) fn error_of(&self, problem: &Problem, setting: Setting) -> Option<f64> {
+    /// What it is and what confirms it.
+    pub fn words(&self) -> &'static str {
         match self {
-            Self::Positions(reference) => Some(errors(problem, reference, setting)?.largest),
-            Self::Speeds(speeds) => speeds.error_of(problem, setting),
+            Self::Positions(_) => Reference::WORDS,
+            Self::Speeds(_) => GaitSpeeds::WORDS,
         }
     }
 
-    /// Whether a method may be chosen. One that tells the truth may not be judged by it.
+    /// What an error is.
+    pub fn unit(&self) -> Unit {
+        match self {
+            Self::Positions(_) => Unit::Length,
+            Self::Speeds(_) => Unit::PartOfSpeed,
+        }
+    }
+
+    /// The error that the scene can afford, in that unit.
+    pub(super) fn budget(&self, problem: &Problem) -> f64 {
+        match self {
+            Self::Positions(_) => problem.budget,
+            Self::Speeds(_) => problem.gait_speed.unwrap_or(f64::INFINITY),
+        }
+    }
+
+    /// The errors of a run; nothing where it blows up or its method refuses a step.
+    pub(super) fn errors_of(&self, problem: &Problem, setting: Setting) -> Option<Errors> {
+        match self {
+            Self::Positions(reference) => errors(problem, reference, setting),
+            Self::Speeds(speeds) => speeds.errors_of(problem, setting),
+        }
+    }
+
+    /// Whether a method may be measured. One that tells the truth may not be judged by it.
     pub(super) fn may_judge(&self, method: Method) -> bool {
         matches!(self, Self::Positions(_)) || method != GaitSpeeds::METHOD
     }

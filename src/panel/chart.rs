@@ -10,7 +10,7 @@ use super::{
     settings::{Action, Settings},
 };
 use crate::{
-    lab::{Point, SweepOptions, WorkPrecision, work_precision},
+    lab::{Point, SweepOptions, Unit, WorkPrecision, work_precision},
     mechanics::integrators::{Method, StickRule},
     scenes::{self, CurrentScene},
 };
@@ -57,7 +57,11 @@ pub fn section(ui: &mut egui::Ui, settings: &mut Settings) {
 }
 
 fn draw(ui: &mut egui::Ui, chart: &WorkPrecision, settings: &Settings) {
-    ui.label(RichText::new("error (lengths) against force evaluations").size(12.0));
+    let error = match chart.unit {
+        Unit::Length => "error (lengths)",
+        Unit::PartOfSpeed => "error of the speed (part of it)",
+    };
+    ui.label(RichText::new(format!("{error} against force evaluations")).size(12.0));
     let power = |mark: GridMark, _: &core::ops::RangeInclusive<f64>| {
         if mark.value.fract() == 0.0 { format!("1e{}", mark.value) } else { String::new() }
     };

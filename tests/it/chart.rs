@@ -33,6 +33,7 @@ pub fn empty() -> WorkPrecision {
         points: Vec::new(),
         limits: Method::ALL.map(|method| (method, f64::INFINITY)).to_vec(),
         setting: Setting { method: Method::RungeKutta4, stick: StickRule::InStages, dt: 0.05 },
+        unit: wriggle::lab::Unit::Length,
         budget: 0.0089,
         reference: "DOP853 with located events, confirmed by Gauss collocation".into(),
         reference_error: 2.3e-12,

@@ -1,14 +1,12 @@
-//! The laboratory: references, runs, sweeps, and what is chosen from them.
+//! The laboratory: references, runs and sweeps.
 
 use std::fs;
 
 use bevy::math::DVec3;
 use wriggle::{
     body::{Gravity, Muscle, Muscles, Particle, ParticleId, Particles, SpineFriction, Spring, SpringId, Springs, Wave},
-    creatures::library,
     lab::{
-        Cache, Candidate, GaitSpeeds, LabError, Problem, ProblemBody, Reference, Search, Setting, SweepOptions, Truth,
-        Unit, cheapest, choose, frontier, measure, work_precision,
+        Cache, GaitSpeeds, Problem, ProblemBody, Reference, Setting, SweepOptions, Truth, Unit, measure, work_precision,
     },
     mechanics::integrators::{Method, StickRule},
     scenes,
@@ -16,9 +14,9 @@ use wriggle::{
 
 use crate::support::{Body, Worm};
 
-const SETTING: Setting = Setting { method: Method::SemiImplicitEuler, stick: StickRule::InStages, dt: 0.01 };
+pub const SETTING: Setting = Setting { method: Method::SemiImplicitEuler, stick: StickRule::InStages, dt: 0.01 };
 
-fn worm(body: Body) -> Problem {
+pub fn worm(body: Body) -> Problem {
     let body = ProblemBody {
         name: "worm".into(),
         particles: body.particles,
@@ -218,9 +216,10 @@ fn runs_of_a_bent_crawler_come_to_its_reference() {
     problem.duration = 8.0;
     let reference = Reference::solve(&problem).unwrap();
     assert!(reference.error() < 1e-11 && reference.events().len() > 10, "{:e}", reference.error());
+    let truth = Truth::Positions(reference);
     let error = |dt| {
         let setting = Setting { method: Method::RungeKutta4, stick: StickRule::InStages, dt };
-        measure(&problem, &reference, setting, 1).errors.unwrap().largest
+        measure(&problem, &truth, setting, 1).errors.unwrap().largest
     };
     let errors = [0.01, 0.005, 0.0025, 0.00125].map(error);
     assert!(errors[3] < 2e-4 && errors.windows(2).all(|pair| pair[1] < 0.6 * pair[0]), "{errors:?}");
@@ -261,9 +260,10 @@ fn methods_have_their_order_against_the_reference() {
     ] {
         let problem = Problem { duration: 5.0, ..oscillator(2.0, damping, 0.2) };
         let reference = Reference::solve(&problem).unwrap();
+        let truth = Truth::Positions(reference);
         let errors = steps.map(|dt| {
             let setting = Setting { method, stick: StickRule::InStages, dt };
-            measure(&problem, &reference, setting, 1).errors.unwrap().largest
+            measure(&problem, &truth, setting, 1).errors.unwrap().largest
         });
         for pair in errors.windows(2) {
             let observed = libm::log2(pair[0] / pair[1]);
@@ -276,9 +276,10 @@ fn methods_have_their_order_against_the_reference() {
 fn a_step_that_meets_no_shared_time_is_compared_as_exactly() {
     let problem = oscillator(2.0, 0.3, 0.2);
     let reference = Reference::solve(&problem).unwrap();
+    let truth = Truth::Positions(reference);
     let error = |dt| {
         let setting = Setting { method: Method::RungeKutta4, stick: StickRule::InStages, dt };
-        measure(&problem, &reference, setting, 1).errors.unwrap().largest
+        measure(&problem, &truth, setting, 1).errors.unwrap().largest
     };
     let (even, odd) = (error(0.1), error(0.0997));
     assert!((odd / even - 1.0).abs() < 0.1, "{even} at 0.1, {odd} at 0.0997");
@@ -289,7 +290,8 @@ fn a_run_that_blows_up_is_a_point_without_errors() {
     let problem = worm(Worm::EXACT.body());
     let reference = Reference::solve(&problem).unwrap();
     let limit = problem.stability_limit(Method::SemiImplicitEuler, StickRule::InStages);
-    let run = |dt| measure(&problem, &reference, Setting { dt, ..SETTING }, 2);
+    let truth = Truth::Positions(reference);
+    let run = |dt| measure(&problem, &truth, Setting { dt, ..SETTING }, 2);
     let (well, blown) = (run(0.5 * limit), run(4.0 * limit));
     assert!(well.errors.is_some() && blown.errors.is_none(), "{well:?} {blown:?}");
     assert_eq!(well.steps, (20.0 / (0.5 * limit)).ceil() as u64);
@@ -390,94 +392,6 @@ fn a_sweep_has_eight_steps_of_every_method_and_both_settings() {
     assert!(said.last().is_some_and(|last| last.0 == last.1 && last.0 == chart.points.len()));
 }
 
-/// A candidate of a made-up study, told apart from others by its step.
-fn candidate(dt: f64, error: Option<f64>, cost: f64) -> Candidate {
-    Candidate { setting: Setting { dt, ..SETTING }, error, cost }
-}
-
-#[test]
-fn the_cheapest_candidate_within_the_budget_is_chosen() {
-    let cheap_but_bad = candidate(8.0, Some(1.1), 10.0);
-    let cheap_but_blown = candidate(7.0, None, 5.0);
-    let dear = candidate(1.0, Some(0.01), 100.0);
-    let good = candidate(4.0, Some(0.9), 20.0);
-    let as_cheap_and_better = candidate(3.0, Some(0.5), 20.0);
-    let beaten = candidate(2.0, Some(0.6), 30.0);
-    let all = [cheap_but_bad, dear, good, cheap_but_blown, beaten, as_cheap_and_better];
-    assert_eq!(cheapest(&all, 1.0), Some(as_cheap_and_better));
-    assert_eq!(cheapest(&all, 0.1), Some(dear));
-    assert_eq!(cheapest(&all, 2.0), Some(cheap_but_bad));
-    assert_eq!(cheapest(&all, 1e-3), None);
-    assert_eq!(frontier(&all), [cheap_but_bad, as_cheap_and_better, dear]);
-}
-
-#[test]
-fn the_choice_for_the_exact_worm_keeps_its_promises() {
-    let mut problem = worm(Worm::EXACT.body());
-    (problem.budget, problem.duration) = (1e-2, 6.0);
-    let reference = Reference::solve(&problem).unwrap();
-    let mut heard = Vec::new();
-    let truth = Truth::Positions(reference.clone());
-    let found = choose(&problem, &truth, Search::Cheapest, &mut |done, total, _| heard.push((done, total))).unwrap();
-    let Candidate { setting, error, cost } = found.choice;
-    assert!(error.unwrap() <= 1e-2 && cost > 0.0, "{found:?}");
-    assert!(setting.dt <= 0.5 * problem.stability_limit(setting.method, setting.stick));
-    for part in [1.0, 0.9, 0.8] {
-        let errors = measure(&problem, &reference, Setting { dt: part * setting.dt, ..setting }, 1).errors.unwrap();
-        assert!(errors.largest <= error.unwrap());
-    }
-    // An order of one: the step of its method that is good enough is known, and dearer.
-    let document = found.document.unwrap();
-    assert!(document.error.unwrap() < 1.2e-3 && (document.cost - 12_000.0).abs() < 1.0, "{found:?}");
-    assert!(cost < 600.0, "{found:?}");
-    assert_eq!(heard.last(), Some(&(Method::ALL.len(), Method::ALL.len())));
-    // What nothing can keep is said.
-    (problem.budget, problem.duration) = (0.0, 0.1);
-    let truth = Truth::of(&problem, &Cache::none()).unwrap();
-    let error = choose(&problem, &truth, Search::Cheapest, &mut |_, _, _| {}).unwrap_err();
-    assert!(error.to_string().contains("worm: no method keeps the error within"), "{error}");
-}
-
-#[test]
-fn the_command_prints_its_choice_and_keeps_the_reference() {
-    let folder = tempfile::tempdir().unwrap();
-    // A worm so quick that all of its ten cycles are a few hundred steps.
-    let text = r#"Creature(version: 1,
-      body: Raw(
-        particles: [(position: (0, 0, 0), mass: 1), (position: (1, 0, 0), mass: 1)],
-        springs: [(ends: (0, 1), stiffness: 90000, damping: 180, rest_length: 1,
-                   muscle: (wave: Sine, amplitude: 0.25, period: 0.005, phase: 0, ramp: 0))],
-        spine: [0, 1]),
-      friction: (ratchet: true, drag: 1, grip: 0))"#;
-    fs::write(folder.path().join("quick.creature.ron"), text).unwrap();
-    let wriggle = |arguments: &[&str]| {
-        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_wriggle"));
-        command.args(arguments).current_dir(folder.path()).env("WRIGGLE_CACHE", folder.path().join("kept"));
-        command.output().unwrap()
-    };
-    let output = wriggle(&["choose", "quick.creature.ron", "--json"]);
-    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
-    let found: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
-    let budget = found["budget"].as_f64().unwrap();
-    let chosen = &found["choice"];
-    assert!(chosen["error"].as_f64().unwrap() <= budget);
-    assert!(found["frontier"].as_array().unwrap().contains(chosen));
-    let costs: Vec<_> = found["frontier"].as_array().unwrap().iter().map(|row| row["cost"].as_f64().unwrap()).collect();
-    assert!(costs.is_sorted() && costs.len() > 3, "{costs:?}");
-    assert_eq!(found["document"]["setting"]["dt"], 0.0005);
-    assert_eq!(fs::read_dir(folder.path().join("kept")).unwrap().count(), 1);
-    let output = wriggle(&["choose", "quick.creature.ron"]);
-    let text = String::from_utf8(output.stdout).unwrap();
-    // Two methods may cost about the same time, and the other may win now.
-    let methods = found["frontier"].as_array().unwrap().iter().map(|row| row["setting"]["method"].as_str().unwrap());
-    let said = text.split("cheapest within the budget").nth(1).unwrap_or_default();
-    assert!(methods.into_iter().any(|method| said.contains(method)), "{text}");
-    // A scene that is not there is the same error as everywhere.
-    let said = |command| String::from_utf8(wriggle(&[command, "gardn"]).stderr).unwrap();
-    assert_eq!(wriggle(&["choose", "gardn"]).status.code(), Some(2));
-    assert_eq!(said("choose"), said("run"));
-}
-
 #[test]
 fn a_scene_with_a_budget_of_gait_speed_has_no_reference_of_positions() {
     let problem = Problem::of(&scenes::load("meadow").unwrap()).unwrap();
@@ -509,59 +423,49 @@ fn the_speed_of_a_gait_is_that_of_the_reference() {
 }
 
 #[test]
-fn gaits_are_chosen_by_their_speed() {
-    let problem = Problem::of(&scenes::load("two-masses").unwrap()).unwrap();
-    let truth = Truth::of(&problem, &Cache::none()).unwrap();
-    let found = choose(&problem, &truth, Search::Frontier, &mut |_, _, _| {}).unwrap();
-    assert_eq!((found.unit, found.budget, found.document), (Unit::PartOfSpeed, 0.01, None));
-    assert!(found.choice.error.unwrap() <= 0.01, "{found:?}");
-    // What tells the truth is not judged by it.
-    assert!(found.frontier.iter().all(|candidate| candidate.setting.method != GaitSpeeds::METHOD), "{found:?}");
-}
-
-/// Whether the setting of a scene is good enough, and not 1.5 times as dear as the cheapest.
-fn is_well_chosen(name: &str) {
-    let problem = Problem::of(&scenes::load(name).unwrap()).unwrap();
-    let truth = match Truth::of(&problem, &Cache::none()) {
-        // What is budgeted in pixels and has no reference keeps the step of its document.
-        Err(LabError::Unsupported { .. }) if problem.gait_speed.is_none() => return,
-        truth => truth.unwrap(),
-    };
-    let found = choose(&problem, &truth, Search::Cheapest, &mut |_, _, _| {}).unwrap();
-    let Candidate { setting, error, cost } = found.own;
-    assert!(error.is_some_and(|error| error <= found.budget), "{name}: {error:?} of {}", found.budget);
-    let Candidate { setting: cheapest, cost: mut least, .. } = found.choice;
-    if let Truth::Positions(reference) = &truth
-        && cfg!(debug_assertions)
-        && cheapest.method.about().evaluations.is_none()
-    {
-        // The time of a step that is not optimised says nothing; its evaluations are counted.
-        least = least.max(measure(&problem, reference, cheapest, 1).evaluations as f64);
+fn a_sweep_on_the_ground_is_of_the_speeds_of_gaits() {
+    let options = SweepOptions { quick: true, cache: Cache::none() };
+    let chart = work_precision(&scenes::load("two-masses").unwrap(), &options, &mut |_, _, _| {}).unwrap();
+    assert_eq!((chart.unit, chart.budget), (Unit::PartOfSpeed, 0.01));
+    for method in Method::ALL {
+        let steps = chart.points.iter().filter(|point| point.setting.method == method).count();
+        // What tells the truth is not judged by it.
+        assert!(if method == GaitSpeeds::METHOD { steps == 0 } else { steps >= 8 }, "{method:?} has {steps} points");
     }
-    assert!(cost <= 1.5 * least, "{name}: {cost}, and {:?} costs {least}", found.choice);
-    let limit = problem.stability_limit(setting.method, setting.stick);
-    assert!(setting.dt <= 0.5 * limit, "{name}: {} of {limit}", setting.dt);
-}
-
-/// The shipped scenes whose settings are chosen, with or without strands. The document's preset is what the document says, and a race is about what is
-/// not chosen.
-fn chosen(with_strands: bool) -> impl Iterator<Item = String> {
-    library::list(library::SCENE).into_keys().filter(move |name| {
-        let scene = scenes::load(name).unwrap();
-        // The six-matrix particle system has one step and no method.
-        let Ok(problem) = Problem::of(&scene) else { return false };
-        let strands = problem.bodies.iter().any(|body| body.strand.is_some());
-        name != "document" && scene.file.truth.is_none() && strands == with_strands
-    })
+    // Whatever follows the motion comes to its speed.
+    for method in [Method::SemiImplicitEuler, Method::RungeKutta2, Method::ImplicitMidpoint] {
+        let points = chart.points.iter().filter(|point| point.setting.method == method);
+        let finest = points.min_by(|a, b| a.setting.dt.total_cmp(&b.setting.dt)).unwrap();
+        let errors = finest.errors.unwrap();
+        assert!(errors.largest < 0.01 && errors.rms <= errors.largest && errors.distance < 0.1, "{finest:?}");
+    }
+    let own = chart.points.iter().find(|point| point.setting == chart.setting).unwrap();
+    assert!(own.errors.unwrap().largest <= 0.01, "{own:?}");
 }
 
 #[test]
-fn shipped_scenes_are_stepped_no_finer_and_no_coarser_than_they_need() {
-    chosen(false).for_each(|name| is_well_chosen(&name));
-}
-
-#[test]
-#[ignore = "takes minutes: cargo test --release --test it -- --ignored no_coarser"]
-fn shipped_strands_are_stepped_no_finer_and_no_coarser_than_they_need() {
-    chosen(true).for_each(|name| is_well_chosen(&name));
+fn speeds_are_kept_and_a_damaged_file_is_computed_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let cache = Cache::at(folder.path());
+    let problem = Problem::of(&scenes::load("two-masses").unwrap()).unwrap();
+    let found = cache.gait_speeds(&problem).unwrap();
+    let files = || fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().path()).collect::<Vec<_>>();
+    let [file] = &files()[..] else { panic!("{:?}", files()) };
+    let whole = fs::read(file).unwrap();
+    let mut damaged = whole.clone();
+    damaged[60] ^= 1;
+    fs::write(file, &damaged).unwrap();
+    assert_eq!(cache.gait_speeds(&problem).unwrap(), found);
+    assert_eq!(fs::read(file).unwrap(), whole);
+    // Another friction, another ground and another step are other problems.
+    let mut others = [(); 3].map(|()| problem.clone());
+    others[0].bodies[0].friction = None;
+    others[1].bodies[0].ground = None;
+    others[2].setting.dt *= 0.5;
+    others.iter().for_each(|other| drop(cache.gait_speeds(other)));
+    assert_eq!(files().len(), 4);
+    // What is kept is not written again.
+    let written = || fs::metadata(file).unwrap().modified().unwrap();
+    let before = written();
+    assert_eq!((cache.gait_speeds(&problem).unwrap(), written()), (found, before));
 }

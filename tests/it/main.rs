@@ -5,6 +5,7 @@ mod support;
 mod animal;
 mod animals;
 mod chart;
+mod choosing;
 mod cli;
 mod clock;
 mod contact;

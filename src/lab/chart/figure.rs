@@ -11,7 +11,7 @@ use super::{
     tracks::Track,
     words,
 };
-use crate::lab::WorkPrecision;
+use crate::lab::{Unit, WorkPrecision};
 
 /// The radius of a marker.
 pub(super) const MARKER: f64 = 5.5;
@@ -36,7 +36,7 @@ pub(super) fn draw(picture: &mut Picture, chart: &WorkPrecision, plot: &Plot, pa
     if let Some(budget) = levels.iter().find(|level| level.band) {
         picture.area(Rect { top: budget.y, ..panel.frame }.corners(), BUDGET, 1.0);
     }
-    grid(picture, plot, panel, first);
+    grid(picture, chart.unit, plot, panel, first);
     strip(picture, plot, panel, first);
     for level in &levels {
         picture.line([(panel.frame.left, level.y), (panel.frame.right, level.y)], level.color, 1.5);
@@ -73,14 +73,18 @@ pub(super) fn places(panel: &Panel, series: &Series) -> Vec<Place> {
     runs.map(|(cost, error)| panel.place(cost, error)).collect()
 }
 
-fn grid(picture: &mut Picture, plot: &Plot, panel: &Panel, first: bool) {
+fn grid(picture: &mut Picture, unit: Unit, plot: &Plot, panel: &Panel, first: bool) {
     let frame = panel.frame;
     let title = match panel.cost {
         Cost::Evaluations => "force evaluations",
         Cost::Seconds => "seconds: shortest run, bar to the median",
     };
     axes::across(picture, frame, &panel.x, title);
-    let title = first.then_some("error: largest distance from the reference, in lengths");
+    let error = match unit {
+        Unit::Length => "error: largest distance from the reference, in lengths",
+        Unit::PartOfSpeed => "error: of the speed of a gait, as a part of it",
+    };
+    let title = first.then_some(error);
     axes::upwards(picture, frame, &panel.y, title);
     if plot.exact && first {
         let y = panel.place(1.0, 0.0).1;

@@ -7,7 +7,11 @@ use super::{
     shapes::{Picture, Place, Rect},
     text::{Anchor, Text, wrap},
 };
-use crate::{lab::WorkPrecision, mechanics::integrators::Method, scenes::DOCUMENT_DT};
+use crate::{
+    lab::{Unit, WorkPrecision},
+    mechanics::integrators::Method,
+    scenes::DOCUMENT_DT,
+};
 
 const CAPTION_SIZE: f64 = 13.0;
 const CAPTION_LINE: f64 = 18.0;
@@ -122,9 +126,13 @@ fn signs(chart: &WorkPrecision, plot: &Plot) -> Vec<(String, Sign)> {
     };
     let own = setting("this scene", chart.setting.method, chart.setting.dt, seconds.setting);
     let document = setting("document", Method::SemiImplicitEuler, DOCUMENT_DT, seconds.document);
-    let mut signs: Vec<(String, Sign)> = vec![
-        (own, Box::new(move |picture, y| figure::draw_star(picture, (middle, y)))),
-        (document, Box::new(move |picture, y| figure::draw_circle(picture, (middle, y), figure::CIRCLE - 3.0))),
+    let mut signs: Vec<(String, Sign)> =
+        vec![(own, Box::new(move |picture, y| figure::draw_star(picture, (middle, y))))];
+    if chart.unit == Unit::Length {
+        let circle: Sign = Box::new(move |picture, y| figure::draw_circle(picture, (middle, y), figure::CIRCLE - 3.0));
+        signs.push((document, circle));
+    }
+    let others: [(String, Sign); 4] = [
         (
             "blew up, at the cost of a whole run".into(),
             Box::new(move |picture, y| figure::cross(picture, (middle, y), figure::GREY)),
@@ -147,6 +155,7 @@ fn signs(chart: &WorkPrecision, plot: &Plot) -> Vec<(String, Sign)> {
             }),
         ),
     ];
+    signs.extend(others);
     let real_time = chart.real_time;
     if seconds.real_time.is_some() {
         let line: Sign =

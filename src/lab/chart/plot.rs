@@ -6,7 +6,11 @@ use super::{
     shapes::{Place, Rect},
     tracks::{Track, pack},
 };
-use crate::{lab::WorkPrecision, mechanics::integrators::Method, scenes::DOCUMENT_DT};
+use crate::{
+    lab::{Unit, WorkPrecision},
+    mechanics::integrators::Method,
+    scenes::DOCUMENT_DT,
+};
 
 /// The two panels of a chart.
 #[derive(Clone, Debug)]
@@ -38,7 +42,7 @@ pub struct Panel {
     pub guides: Vec<Guide>,
     /// The scene's own setting.
     pub setting: Option<Place>,
-    /// The setting of the document: semi-implicit Euler with [`DOCUMENT_DT`].
+    /// The setting of the document: semi-implicit Euler with [`DOCUMENT_DT`]; not where gaits are judged, of which it does not speak.
     pub document: Option<Place>,
     /// Where a run takes as long as the app takes to show it; in the panel of seconds and if it lies within.
     pub real_time: Option<f64>,
@@ -111,7 +115,7 @@ impl Plot {
             let wanted = chart.setting;
             let at = |series: &Series, dt| series.at(dt, costs[i]).map(|(cost, error)| panel.place(cost, error));
             let own = |series: &&Series| series.method == wanted.method && series.stick == wanted.stick;
-            let document = |series: &&Series| series.method == Method::SemiImplicitEuler;
+            let document = |series: &&Series| series.method == Method::SemiImplicitEuler && chart.unit == Unit::Length;
             let setting = series.iter().filter(own).find_map(|series| at(series, wanted.dt));
             let document = series.iter().filter(document).find_map(|series| at(series, DOCUMENT_DT));
             (panel.setting, panel.document) = (setting, document);

@@ -2,7 +2,7 @@
 
 use crate::{
     lab::{
-        Point, Problem, Reference, Setting, SweepOptions,
+        Point, Problem, Setting, SweepOptions, Truth,
         choose::{steps, worst_error},
         run::measure,
         sweep::work,
@@ -17,16 +17,10 @@ const MOST_WORK: f64 = 1e8;
 /// over the step and 0.9 and 0.8 of it is within the budget. A run costs the less the larger its step is, so this one is the cheapest; it is timed.
 ///
 /// A run that takes longer than anybody waits for at so many factors is not tried.
-pub(super) fn cheapest_run(
-    problem: &Problem,
-    reference: &Reference,
-    method: Method,
-    options: &SweepOptions,
-) -> Option<Point> {
+pub(super) fn cheapest_run(problem: &Problem, truth: &Truth, method: Method, options: &SweepOptions) -> Option<Point> {
     let stick = StickRule::InStages;
     let settings = steps(problem, method, stick).into_iter().map(|dt| Setting { method, stick, dt });
     let mut short = settings.take_while(|setting| work(problem, method, setting.dt) <= MOST_WORK);
-    let good =
-        |setting: &Setting| worst_error(problem, reference, *setting).is_some_and(|error| error <= problem.budget);
-    short.find(good).map(|setting| measure(problem, reference, setting, options.repeats()))
+    let good = |setting: &Setting| worst_error(problem, truth, *setting).is_some_and(|error| error <= problem.budget);
+    short.find(good).map(|setting| measure(problem, truth, setting, options.repeats()))
 }

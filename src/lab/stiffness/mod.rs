@@ -12,7 +12,7 @@ mod table;
 
 use crate::{
     body::{SpringId, Springs},
-    lab::{LabError, Problem, Reference, SweepOptions, machine::machine, sweep::work},
+    lab::{LabError, Problem, Reference, SweepOptions, Truth, machine::machine, sweep::work},
     mechanics::integrators::{Method, StickRule},
 };
 
@@ -91,9 +91,10 @@ pub fn stiffness_study(
                 });
             }
             let reference = options.cache.reference(&stiff)?;
-            Ok((stiff, reference))
+            let way = way(&stiff, &reference);
+            Ok((stiff, Truth::Positions(reference), way))
         });
-        let (stiff, reference) = match solved {
+        let (stiff, truth, way) = match solved {
             Ok(solved) => solved,
             Err(error) if i == 0 => return Err(error),
             Err(error) => {
@@ -103,16 +104,11 @@ pub fn stiffness_study(
         };
         let runs = methods.iter().enumerate().map(|(j, &method)| {
             progress(done + j, all, &format!("{} at {factor} times the stiffness", method.name()));
-            let run = find::cheapest_run(&stiff, &reference, method, options);
+            let run = find::cheapest_run(&stiff, &truth, method, options);
             StiffRun { method, run }
         });
         let runs = runs.collect::<Vec<_>>();
-        study.scenes.push(StiffScene {
-            factor,
-            way: way(&stiff, &reference),
-            reference_error: reference.error(),
-            runs,
-        });
+        study.scenes.push(StiffScene { factor, way, reference_error: truth.error(), runs });
     }
     progress(all, all, "done");
     Ok(study)

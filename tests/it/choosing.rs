@@ -1,0 +1,161 @@
+//! What is chosen for a scene: the cheapest method and step that are good enough.
+
+use std::fs;
+
+use wriggle::{
+    creatures::library,
+    lab::{
+        Cache, Candidate, GaitSpeeds, LabError, Problem, Reference, Search, Setting, Truth, Unit, cheapest, choose,
+        frontier, measure,
+    },
+    mechanics::integrators::Method,
+    scenes,
+};
+
+use crate::{
+    lab::{SETTING, worm},
+    support::Worm,
+};
+
+/// A candidate of a made-up study, told apart from others by its step.
+fn candidate(dt: f64, error: Option<f64>, cost: f64) -> Candidate {
+    Candidate { setting: Setting { dt, ..SETTING }, error, cost }
+}
+
+#[test]
+fn the_cheapest_candidate_within_the_budget_is_chosen() {
+    let cheap_but_bad = candidate(8.0, Some(1.1), 10.0);
+    let cheap_but_blown = candidate(7.0, None, 5.0);
+    let dear = candidate(1.0, Some(0.01), 100.0);
+    let good = candidate(4.0, Some(0.9), 20.0);
+    let as_cheap_and_better = candidate(3.0, Some(0.5), 20.0);
+    let beaten = candidate(2.0, Some(0.6), 30.0);
+    let all = [cheap_but_bad, dear, good, cheap_but_blown, beaten, as_cheap_and_better];
+    assert_eq!(cheapest(&all, 1.0), Some(as_cheap_and_better));
+    assert_eq!(cheapest(&all, 0.1), Some(dear));
+    assert_eq!(cheapest(&all, 2.0), Some(cheap_but_bad));
+    assert_eq!(cheapest(&all, 1e-3), None);
+    assert_eq!(frontier(&all), [cheap_but_bad, as_cheap_and_better, dear]);
+}
+
+#[test]
+fn the_choice_for_the_exact_worm_keeps_its_promises() {
+    let mut problem = worm(Worm::EXACT.body());
+    (problem.budget, problem.duration) = (1e-2, 6.0);
+    let reference = Reference::solve(&problem).unwrap();
+    let mut heard = Vec::new();
+    let truth = Truth::Positions(reference);
+    let found = choose(&problem, &truth, Search::Cheapest, &mut |done, total, _| heard.push((done, total))).unwrap();
+    let Candidate { setting, error, cost } = found.choice;
+    assert!(error.unwrap() <= 1e-2 && cost > 0.0, "{found:?}");
+    assert!(setting.dt <= 0.5 * problem.stability_limit(setting.method, setting.stick));
+    for part in [1.0, 0.9, 0.8] {
+        let errors = measure(&problem, &truth, Setting { dt: part * setting.dt, ..setting }, 1).errors.unwrap();
+        assert!(errors.largest <= error.unwrap());
+    }
+    // An order of one: the step of its method that is good enough is known, and dearer.
+    let document = found.document.unwrap();
+    assert!(document.error.unwrap() < 1.2e-3 && (document.cost - 12_000.0).abs() < 1.0, "{found:?}");
+    assert!(cost < 600.0, "{found:?}");
+    assert_eq!(heard.last(), Some(&(Method::ALL.len(), Method::ALL.len())));
+    // What nothing can keep is said.
+    (problem.budget, problem.duration) = (0.0, 0.1);
+    let truth = Truth::of(&problem, &Cache::none()).unwrap();
+    let error = choose(&problem, &truth, Search::Cheapest, &mut |_, _, _| {}).unwrap_err();
+    assert!(error.to_string().contains("worm: no method keeps the error within"), "{error}");
+}
+
+#[test]
+fn the_command_prints_its_choice_and_keeps_the_reference() {
+    let folder = tempfile::tempdir().unwrap();
+    // A worm so quick that all of its ten cycles are a few hundred steps.
+    let text = r#"Creature(version: 1,
+      body: Raw(
+        particles: [(position: (0, 0, 0), mass: 1), (position: (1, 0, 0), mass: 1)],
+        springs: [(ends: (0, 1), stiffness: 90000, damping: 180, rest_length: 1,
+                   muscle: (wave: Sine, amplitude: 0.25, period: 0.005, phase: 0, ramp: 0))],
+        spine: [0, 1]),
+      friction: (ratchet: true, drag: 1, grip: 0))"#;
+    fs::write(folder.path().join("quick.creature.ron"), text).unwrap();
+    let wriggle = |arguments: &[&str]| {
+        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_wriggle"));
+        command.args(arguments).current_dir(folder.path()).env("WRIGGLE_CACHE", folder.path().join("kept"));
+        command.output().unwrap()
+    };
+    let output = wriggle(&["choose", "quick.creature.ron", "--json"]);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    let found: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let budget = found["budget"].as_f64().unwrap();
+    let chosen = &found["choice"];
+    assert!(chosen["error"].as_f64().unwrap() <= budget);
+    assert!(found["frontier"].as_array().unwrap().contains(chosen));
+    let costs: Vec<_> = found["frontier"].as_array().unwrap().iter().map(|row| row["cost"].as_f64().unwrap()).collect();
+    assert!(costs.is_sorted() && costs.len() > 3, "{costs:?}");
+    assert_eq!(found["document"]["setting"]["dt"], 0.0005);
+    assert_eq!(fs::read_dir(folder.path().join("kept")).unwrap().count(), 1);
+    let output = wriggle(&["choose", "quick.creature.ron"]);
+    let text = String::from_utf8(output.stdout).unwrap();
+    // Two methods may cost about the same time, and the other may win now.
+    let methods = found["frontier"].as_array().unwrap().iter().map(|row| row["setting"]["method"].as_str().unwrap());
+    let said = text.split("cheapest within the budget").nth(1).unwrap_or_default();
+    assert!(methods.into_iter().any(|method| said.contains(method)), "{text}");
+    // A scene that is not there is the same error as everywhere.
+    let said = |command| String::from_utf8(wriggle(&[command, "gardn"]).stderr).unwrap();
+    assert_eq!(wriggle(&["choose", "gardn"]).status.code(), Some(2));
+    assert_eq!(said("choose"), said("run"));
+}
+
+#[test]
+fn gaits_are_chosen_by_their_speed() {
+    let problem = Problem::of(&scenes::load("two-masses").unwrap()).unwrap();
+    let truth = Truth::of(&problem, &Cache::none()).unwrap();
+    let found = choose(&problem, &truth, Search::Frontier, &mut |_, _, _| {}).unwrap();
+    assert_eq!((found.unit, found.budget, found.document), (Unit::PartOfSpeed, 0.01, None));
+    assert!(found.choice.error.unwrap() <= 0.01, "{found:?}");
+    // What tells the truth is not judged by it.
+    assert!(found.frontier.iter().all(|candidate| candidate.setting.method != GaitSpeeds::METHOD), "{found:?}");
+}
+
+/// Whether the setting of a scene is good enough, and not 1.5 times as dear as the cheapest.
+fn is_well_chosen(name: &str) {
+    let problem = Problem::of(&scenes::load(name).unwrap()).unwrap();
+    let truth = match Truth::of(&problem, &Cache::none()) {
+        // What is budgeted in pixels and has no reference keeps the step of its document.
+        Err(LabError::Unsupported { .. }) if problem.gait_speed.is_none() => return,
+        truth => truth.unwrap(),
+    };
+    let found = choose(&problem, &truth, Search::Cheapest, &mut |_, _, _| {}).unwrap();
+    let Candidate { setting, error, cost } = found.own;
+    assert!(error.is_some_and(|error| error <= found.budget), "{name}: {error:?} of {}", found.budget);
+    let Candidate { setting: cheapest, cost: mut least, .. } = found.choice;
+    if cfg!(debug_assertions) && cheapest.method.about().evaluations.is_none() {
+        // The time of a step that is not optimised says nothing; its evaluations are counted.
+        least = least.max(measure(&problem, &truth, cheapest, 1).evaluations as f64);
+    }
+    assert!(cost <= 1.5 * least, "{name}: {cost}, and {:?} costs {least}", found.choice);
+    let limit = problem.stability_limit(setting.method, setting.stick);
+    assert!(setting.dt <= 0.5 * limit, "{name}: {} of {limit}", setting.dt);
+}
+
+/// The shipped scenes whose settings are chosen, with or without strands. The document's preset is what the document says, and a race is about what is
+/// not chosen.
+fn chosen(with_strands: bool) -> impl Iterator<Item = String> {
+    library::list(library::SCENE).into_keys().filter(move |name| {
+        let scene = scenes::load(name).unwrap();
+        // The six-matrix particle system has one step and no method.
+        let Ok(problem) = Problem::of(&scene) else { return false };
+        let strands = problem.bodies.iter().any(|body| body.strand.is_some());
+        name != "document" && scene.file.truth.is_none() && strands == with_strands
+    })
+}
+
+#[test]
+fn shipped_scenes_are_stepped_no_finer_and_no_coarser_than_they_need() {
+    chosen(false).for_each(|name| is_well_chosen(&name));
+}
+
+#[test]
+#[ignore = "takes minutes: cargo test --release --test it -- --ignored no_coarser"]
+fn shipped_strands_are_stepped_no_finer_and_no_coarser_than_they_need() {
+    chosen(true).for_each(|name| is_well_chosen(&name));
+}
