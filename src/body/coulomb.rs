@@ -109,6 +109,23 @@ impl CoulombFriction {
         }
     }
 
+    /// The coefficients: one set a particle, or one for all.
+    pub fn sets(&self) -> &[Coefficients] {
+        &self.coefficients
+    }
+
+    /// Changes one of the [`sets`](Self::sets).
+    ///
+    /// # Errors
+    /// If a coefficient is negative or not finite. A set that is not there is left alone.
+    pub fn set(&mut self, index: usize, coefficients: Coefficients) -> Result<(), BodyError> {
+        let checked = coefficients.check(|| format!("coulomb[{index}]"))?;
+        if let Some(set) = self.coefficients.get_mut(index) {
+            *set = checked;
+        }
+        Ok(())
+    }
+
     /// The load, if it is given.
     pub fn load(&self) -> Option<f64> {
         self.load

@@ -51,7 +51,7 @@ pub struct Choice {
 /// How far to look.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Search {
-    /// Only as far as the cheapest can be; the frontier is incomplete.
+    /// Only as far as the cheapest can be; the frontier is incomplete, and the errors of what is not good enough are of the first run that says so.
     Cheapest,
     /// Every method down to a thousandth of the budget, or to where others beat it by far, for the whole frontier.
     Frontier,
@@ -134,19 +134,24 @@ fn follow(
     candidates: &mut Vec<Candidate>,
 ) {
     /// Nobody waits for more spring updates in one run.
-    const MOST_WORK: f64 = 1e9;
-    /// After two octaves of steps beaten by far, smaller ones will not change that.
-    const HOPELESS: usize = 8;
+    const MOST_WORK: f64 = 2e8;
+    /// After an octave of steps beaten by far, smaller ones will not change that.
+    const HOPELESS: usize = 4;
     /// Beaten by far: a cheaper candidate has so much less of an error.
     const FAR: f64 = 4.0;
     let budget = judge.budget;
     // Frontiers end at so much of the budget. Speeds are told by a method that is not much more exact than those that it judges.
     let little = match judge.truth.unit() {
         Unit::Length => 1e-3,
-        Unit::PartOfSpeed => 0.1,
+        Unit::PartOfSpeed => 0.25,
     };
     let mut beaten = 0;
+    // The largest step that is still to be tried. What is good enough is only followed in octaves.
+    let mut most = f64::INFINITY;
     for &dt in steps {
+        if dt > most {
+            continue;
+        }
         let setting = Setting { method, stick, dt };
         if work(judge.problem, method, dt) > MOST_WORK {
             return;
@@ -156,12 +161,17 @@ fn follow(
         if search == Search::Cheapest && is_dear() {
             return;
         }
-        let candidate = Candidate { setting, error: judge.error(setting), cost };
-        let by_far = |other: &Candidate| {
-            other.cost <= candidate.cost
-                && other.error.is_some_and(|least| candidate.error.is_none_or(|error| error >= FAR * least))
+        // So much of an error is beaten by far; `None` where nothing is as cheap.
+        let rivals = candidates.iter().filter(|other| other.cost <= cost).filter_map(|other| other.error);
+        let far = rivals.reduce(f64::min).map(|least| FAR * least);
+        // A run that settles it is enough: what is beaten by a part of its steps is beaten by all of them.
+        let settled = |error: f64| match search {
+            Search::Cheapest => error > budget,
+            Search::Frontier => far.is_some_and(|far| error >= far),
         };
-        beaten = if candidates.iter().any(by_far) { beaten + 1 } else { 0 };
+        let candidate = Candidate { setting, error: worst_error(judge.problem, judge.truth, setting, settled), cost };
+        let is_beaten = far.is_some_and(|far| candidate.error.is_none_or(|error| error >= far));
+        beaten = if is_beaten { beaten + 1 } else { 0 };
         candidates.push(candidate);
         if beaten == HOPELESS {
             return;
@@ -173,6 +183,9 @@ fn follow(
         };
         if candidate.error.is_some_and(|error| error <= enough) {
             return;
+        }
+        if candidate.error.is_some_and(|error| error <= budget) {
+            most = 0.5 * dt * (1.0 + 1e-9);
         }
     }
 }
@@ -199,12 +212,21 @@ fn rounded_down(dt: f64) -> f64 {
     format!("{:.1e}", (dt / unit + 1e-9).floor() * unit).parse().unwrap_or(dt)
 }
 
-/// The largest error over the step and 0.9 and 0.8 of it; `None` where one of them blows up.
-pub(super) fn worst_error(problem: &Problem, truth: &Truth, setting: Setting) -> Option<f64> {
-    [1.0, 0.9, 0.8].into_iter().try_fold(0.0, |worst, part| {
-        let errors = truth.errors_of(problem, Setting { dt: part * setting.dt, ..setting })?;
-        Some(f64::max(worst, errors.largest))
-    })
+/// The largest error over the step and 0.9 and 0.8 of it, or of the first of them where that settles it; `None` where one of them blows up.
+pub(super) fn worst_error(
+    problem: &Problem,
+    truth: &Truth,
+    setting: Setting,
+    settled: impl Fn(f64) -> bool,
+) -> Option<f64> {
+    let mut worst = 0.0;
+    for part in [1.0, 0.9, 0.8] {
+        worst = f64::max(worst, truth.errors_of(problem, Setting { dt: part * setting.dt, ..setting })?.largest);
+        if settled(worst) {
+            break;
+        }
+    }
+    Some(worst)
 }
 
 /// What candidates are judged with.
@@ -218,11 +240,8 @@ struct Judge<'a> {
 
 impl Judge<'_> {
     fn candidate(&self, setting: Setting) -> Candidate {
-        Candidate { setting, error: self.error(setting), cost: self.cost(setting) }
-    }
-
-    fn error(&self, setting: Setting) -> Option<f64> {
-        worst_error(self.problem, self.truth, setting)
+        let error = worst_error(self.problem, self.truth, setting, |_| false);
+        Candidate { setting, error, cost: self.cost(setting) }
     }
 
     fn cost(&self, setting: Setting) -> f64 {

@@ -24,6 +24,12 @@ pub fn elastic_energy(body: &BodyParts<'_>, time: f64) -> f64 {
     whole.map(|(_, spring)| energy(spring)).sum()
 }
 
+/// Energy in the field of gravity, Σ m g y; zero for what lies at y = 0.
+pub fn gravity_energy(body: &BodyParts<'_>) -> f64 {
+    let acceleration = body.gravity.map_or(0.0, |gravity| gravity.acceleration());
+    body.particles.positions().zip(body.particles.masses()).map(|(x, m)| m * acceleration * x.y).sum()
+}
+
 /// Momentum, Σ m v.
 pub fn momentum(particles: &Particles) -> DVec3 {
     particles.velocities().zip(particles.masses()).map(|(v, &m)| v * m).sum()

@@ -28,7 +28,7 @@ mod tearing;
 mod wave;
 
 pub use advance::{Advance, Timeline};
-pub use energy::{angular_momentum, elastic_energy, kinetic_energy, momentum};
+pub use energy::{angular_momentum, elastic_energy, gravity_energy, kinetic_energy, momentum};
 pub use forces::{rest_length, rest_lengths};
 pub use ground::{ground_distance, ground_grip};
 pub use model::{BodyParts, Explosion, Model, State};

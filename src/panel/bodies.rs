@@ -48,6 +48,11 @@ fn selection(ui: &mut egui::Ui, settings: &mut Settings) {
             ui.selectable_value(&mut settings.selected, index, &body.name);
         }
     });
+    if !settings.race.is_empty() {
+        return;
+    }
+    ui.checkbox(&mut settings.together, "set all bodies at once")
+        .on_hover_text("Every body that has it gets what is set here");
 }
 
 /// The parameters of `body` by their fields, as indices into the settings.

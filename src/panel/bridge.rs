@@ -97,6 +97,8 @@ fn open(world: &mut World, settings: &mut Settings, known: &mut Known) {
     known.frozen.clear();
     settings.parameters.clear();
     chart::forget(world, settings);
+    // Blocks side by side are there to be compared, in one attitude.
+    settings.together = known.defaults.keys().filter(|path| path.ends_with(".block.tilt")).count() > 1;
     settings.normal_time_scale = None;
     settings.steps_refusal = None;
     settings.files.scenes = library::list(library::SCENE).into_keys().collect();
@@ -223,8 +225,8 @@ pub fn apply(world: &mut World) {
 fn act(world: &mut World, settings: &mut Settings, action: Action) {
     match action {
         Action::Set { path, value } => {
-            for other in same_of_other_runners(settings, &path) {
-                // What one runner refuses its twins refuse as well, and one answer is enough.
+            for other in same_of_others(settings, &path) {
+                // What one refuses its twins refuse as well, and one answer is enough; what others have not cannot be set.
                 parameters::set(world, &other, value).ok();
             }
             if let Err(refusal) = parameters::set(world, &path, value) {
@@ -268,11 +270,12 @@ fn act(world: &mut World, settings: &mut Settings, action: Action) {
     }
 }
 
-/// The same parameter of all other runners of a race: they stay one creature.
-fn same_of_other_runners(settings: &Settings, path: &str) -> Vec<String> {
+/// The same parameter of all other bodies where they are set together: the runners of a race stay one creature.
+fn same_of_others(settings: &Settings, path: &str) -> Vec<String> {
     let owner = Path::parse(path).owner;
     let names = settings.bodies.iter().map(|body| body.name.as_str());
-    if settings.race.is_empty() || !names.clone().any(|name| name == owner) {
+    let together = settings.together || !settings.race.is_empty();
+    if !together || !names.clone().any(|name| name == owner) {
         return Vec::new();
     }
     names.filter(|name| *name != owner).map(|name| format!("{name}{}", &path[owner.len()..])).collect()

@@ -9,6 +9,7 @@ pub mod bridge;
 pub mod chart;
 mod colors;
 pub mod files;
+pub mod gait;
 pub mod gauge;
 mod keys;
 mod names;

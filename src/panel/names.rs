@@ -1,13 +1,13 @@
 //! What the parameters are called, by their paths.
 
-use crate::body::Requirement;
+use crate::{body::Requirement, scenes::parameters};
 
 /// A parameter's path, taken apart: `owner.group[index].field`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Path<'a> {
     /// The body's name, or `clock`.
     pub owner: &'a str,
-    /// `springs`, `particles`, `muscles`, `waves`, `gait`, `friction`, or nothing.
+    /// One of the registry's groups, such as `springs`, or nothing.
     pub group: &'a str,
     /// The element, where the path names one.
     pub index: Option<usize>,
@@ -16,9 +16,6 @@ pub struct Path<'a> {
 }
 
 impl<'a> Path<'a> {
-    /// The groups of a body.
-    const GROUPS: [&'static str; 6] = ["springs", "particles", "muscles", "waves", "gait", "friction"];
-
     /// Takes a path apart. A body's name may contain points.
     pub fn parse(path: &'a str) -> Self {
         let (rest, field) = path.rsplit_once('.').unwrap_or(("", path));
@@ -27,7 +24,7 @@ impl<'a> Path<'a> {
             Some((group, index)) => (group, index.parse().ok()),
             None => (last, None),
         };
-        if !before.is_empty() && Self::GROUPS.contains(&group) {
+        if !before.is_empty() && parameters::groups().any(|known| known == group) {
             Self { owner: before, group, index, field }
         } else {
             Self { owner: rest, group: "", index: None, field }
@@ -69,6 +66,12 @@ impl Name {
             "drag" => ("forward drag μ_f", NonNegative),
             "grip" => ("side grip μ_l", NonNegative),
             "ratchet" => ("ratchet", NonNegative),
+            "forward" => ("friction forward", NonNegative),
+            "backward" => ("friction backward", NonNegative),
+            "sideways" => ("friction sideways", NonNegative),
+            "rate" => ("damping by mass c", NonNegative),
+            "per_step" => ("damping a step λ", NonNegative),
+            "tilt" => ("tilt °", Finite),
             "gravity" => ("gravity g", NonNegative),
             "dt" => ("step dt", Positive),
             "time_scale" => ("time scale", NonNegative),

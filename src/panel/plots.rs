@@ -5,9 +5,10 @@ use egui_plot::{AxisHints, Line, Plot, PlotPoints, PlotUi, Polygon};
 
 use super::{
     colors::{self, SERIES},
+    gait,
     ring::Ring,
     settings::Settings,
-    traces::Traces,
+    traces::{Block, Traces},
 };
 
 /// How high a plot is.
@@ -19,9 +20,14 @@ pub fn section(ui: &mut egui::Ui, settings: &mut Settings, traces: &Traces) {
         ui.weak("The plots begin with the first tick.");
     } else {
         let shown = span(settings, traces);
-        lengths(ui, traces, shown);
-        velocities(ui, traces, shown);
+        if traces.blocks.is_empty() {
+            lengths(ui, traces, shown);
+            velocities(ui, traces, shown);
+        } else {
+            block(ui, traces, shown);
+        }
         distance(ui, traces, shown);
+        gait::section(ui, &traces.gait);
     }
     cost(ui, settings, traces);
 }
@@ -57,6 +63,25 @@ fn velocities(ui: &mut egui::Ui, traces: &Traces, shown: (f64, f64)) {
             plot.line(Line::new(trace.name.as_str(), points(&traces.time, &trace.velocity)).color(color).width(1.6));
         }
     });
+}
+
+/// What a block on a grid has in place of a spine.
+fn block(ui: &mut egui::Ui, traces: &Traces, shown: (f64, f64)) {
+    type Plotted = (&'static str, &'static str, fn(&Block) -> f64);
+    let plots: [Plotted; 4] = [
+        ("shape", "shape error (spacings)", |block| block.shape.shape_error),
+        ("volume", "volume (1: undeformed)", |block| block.shape.volume.unwrap_or(1.0)),
+        ("inverted", "cells inside out", |block| block.shape.inverted as f64),
+        ("energy", "energy: kinetic, elastic and of height", |block| block.energy),
+    ];
+    for ((id, title, value), color) in plots.into_iter().zip(SERIES) {
+        let now = traces.blocks.last().map(value).unwrap_or_default();
+        legend(ui, &format!("{title}: {now:.3}"), []);
+        show(ui, id, shown, |plot| {
+            let line = traces.time.iter().zip(traces.blocks.iter()).map(|(&time, block)| [time, value(block)]);
+            plot.line(Line::new(title, line.collect::<PlotPoints<'_>>()).color(color).width(1.8));
+        });
+    }
 }
 
 fn distance(ui: &mut egui::Ui, traces: &Traces, shown: (f64, f64)) {

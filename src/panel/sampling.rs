@@ -10,8 +10,8 @@ use super::{
     traces::{Frame, Traces, observe},
 };
 use crate::{
-    body::{Muscles, Particles, SpineFriction, Springs},
-    physics::{Clock, Cost, StartState},
+    body::Particles,
+    physics::{Clock, Cost, StartState, body_parts},
 };
 
 /// How much of a new frame's cost goes into the numbers that are shown.
@@ -24,20 +24,12 @@ pub(super) struct Meter {
     steps_per_tick: u64,
 }
 
-type Body = (
-    &'static Particles,
-    &'static Springs,
-    Option<&'static Muscles>,
-    Option<&'static SpineFriction>,
-    Option<&'static StartState>,
-);
-
 /// Samples the body after a tick.
 pub(super) fn tick(
     clock: Option<Res<Clock>>,
     cost: Option<Res<Cost>>,
     settings: Res<Settings>,
-    bodies: Query<Body>,
+    bodies: Query<EntityRef, With<Particles>>,
     mut traces: ResMut<Traces>,
     mut meter: ResMut<Meter>,
 ) {
@@ -47,9 +39,11 @@ pub(super) fn tick(
     }
     let Some(clock) = clock else { return };
     let Some(body) = settings.body().map(|body| body.entity) else { return };
-    let Ok((particles, springs, muscles, friction, start)) = bodies.get(body) else { return };
-    let start = start.map_or_else(|| particles.center(), |start| start.0.center());
-    traces.record(body, &observe(particles, springs, muscles, friction, start, clock.time()));
+    let Ok(entity) = bodies.get(body) else { return };
+    let Some(parts) = body_parts(entity) else { return };
+    let start = entity.get::<StartState>().map_or_else(|| parts.particles.center(), |start| start.0.center());
+    traces.record(body, &observe(&parts, start, clock.time()));
+    traces.gait.look(body, &parts, &clock);
 }
 
 /// Samples the cost of a frame.

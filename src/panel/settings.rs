@@ -22,6 +22,8 @@ pub struct Settings {
     pub bodies: Vec<BodyInfo>,
     /// Which of the bodies the panel shows.
     pub selected: usize,
+    /// What is set for one body is set for all that have it.
+    pub together: bool,
     /// The method of the scene.
     pub method: Method,
     /// The work-precision chart of the scene.

@@ -4,10 +4,10 @@ use core::ops::RangeInclusive;
 
 use bevy::{ecs::prelude::*, math::DVec3};
 
-use super::ring::Ring;
+use super::{gait::GaitWatch, ring::Ring};
 use crate::{
-    body::{Muscles, ParticleId, Particles, SpineFriction, SpringId, Springs},
-    mechanics,
+    body::{ParticleId, Particles, SpineFriction},
+    mechanics::{BodyParts, elastic_energy, gravity_energy, kinetic_energy, metrics::BlockShape, rest_lengths},
 };
 
 /// A mass whose velocity along the spine is smaller than this is at rest.
@@ -30,6 +30,10 @@ pub struct Traces {
     pub masses: Vec<MassTrace>,
     /// How far the centre of mass is from where it started.
     pub distance: Ring<f64>,
+    /// The shape of a block on a grid; empty where the body is none.
+    pub blocks: Ring<Block>,
+    /// The gait of an animal.
+    pub gait: GaitWatch,
     /// What the last frames cost.
     pub frames: Ring<Frame>,
     capacity: usize,
@@ -55,6 +59,15 @@ pub struct MassTrace {
     pub velocity: Ring<f64>,
 }
 
+/// A block on a grid at one tick.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Block {
+    /// Its shape.
+    pub shape: BlockShape,
+    /// Its kinetic, elastic and gravity energy.
+    pub energy: f64,
+}
+
 /// What one frame cost.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Frame {
@@ -77,6 +90,8 @@ pub struct Observation {
     pub masses: Vec<(String, f64)>,
     /// How far the centre of mass is from where it started.
     pub distance: f64,
+    /// The shape of a block on a grid, where the body is one.
+    pub block: Option<Block>,
 }
 
 impl Default for Traces {
@@ -94,6 +109,8 @@ impl Traces {
             springs: Vec::new(),
             masses: Vec::new(),
             distance: Ring::new(capacity),
+            blocks: Ring::new(capacity),
+            gait: GaitWatch::default(),
             frames: Ring::new(capacity),
             capacity,
         }
@@ -103,6 +120,8 @@ impl Traces {
     pub fn clear(&mut self) {
         self.time.clear();
         self.distance.clear();
+        self.blocks.clear();
+        self.gait = GaitWatch::default();
         self.springs.clear();
         self.masses.clear();
     }
@@ -110,6 +129,7 @@ impl Traces {
     /// Adds a tick of `body`. Another body, other springs or a time that went back begin anew; a tick in which no time passed adds nothing.
     pub fn record(&mut self, body: Entity, seen: &Observation) {
         let same = self.body == Some(body)
+            && self.blocks.is_empty() == (seen.block.is_none() || self.time.is_empty())
             && self.springs.iter().map(|trace| &trace.name).eq(seen.springs.iter().map(|(name, ..)| name))
             && self.masses.iter().map(|trace| &trace.name).eq(seen.masses.iter().map(|(name, _)| name));
         let last = self.time.last().copied();
@@ -120,6 +140,7 @@ impl Traces {
         }
         self.time.push(seen.time);
         self.distance.push(seen.distance);
+        seen.block.into_iter().for_each(|block| self.blocks.push(block));
         for (trace, (_, length, rest)) in self.springs.iter_mut().zip(&seen.springs) {
             trace.length.push(*length);
             trace.rest.push(*rest);
@@ -165,26 +186,19 @@ pub fn rest_intervals(samples: impl IntoIterator<Item = (f64, f64)>) -> Vec<Rang
 }
 
 /// What a body does at `time`. `start` is where its centre of mass began.
-pub fn observe(
-    particles: &Particles,
-    springs: &Springs,
-    muscles: Option<&Muscles>,
-    friction: Option<&SpineFriction>,
-    start: DVec3,
-    time: f64,
-) -> Observation {
-    let spine = spine(particles, friction);
+pub fn observe(body: &BodyParts<'_>, start: DVec3, time: f64) -> Observation {
+    let particles = body.particles;
+    let spine = spine(particles, body.friction);
     let place = |particle: ParticleId| spine.iter().position(|&other| other == particle);
     let on_spine = |ends: [ParticleId; 2]| match (place(ends[0]), place(ends[1])) {
         (Some(a), Some(b)) => a.abs_diff(b) == 1,
         _ => false,
     };
-    let springs = (springs.ends().iter().enumerate())
-        .filter(|(_, ends)| on_spine(**ends))
+    let springs = (body.springs.ends().iter().zip(rest_lengths(body, time)))
+        .filter(|(ends, _)| on_spine(**ends))
         .take(MOST_SERIES)
-        .filter_map(|(index, &[a, b])| {
+        .filter_map(|(&[a, b], rest)| {
             let length = particles.position(a)?.distance(particles.position(b)?);
-            let rest = mechanics::rest_length(springs, muscles, SpringId(index as u32), time);
             let (first, second) = (place(a)?.min(place(b)?), place(a)?.max(place(b)?));
             Some((format!("{}–{}", letter(first), letter(second)), length, rest))
         })
@@ -196,7 +210,11 @@ pub fn observe(
             Some((letter(index), velocity))
         })
         .collect();
-    Observation { time, springs, masses, distance: particles.center().distance(start) }
+    let block = body.lattice.and_then(|lattice| {
+        let shape = BlockShape::measure(particles, lattice)?;
+        Some(Block { shape, energy: kinetic_energy(particles) + elastic_energy(body, time) + gravity_energy(body) })
+    });
+    Observation { time, springs, masses, distance: particles.center().distance(start), block }
 }
 
 /// The spine from tail to head; the order of the particles where there is no friction to say it.

@@ -28,6 +28,8 @@ mod limits;
 mod methods;
 #[cfg(feature = "window")]
 mod panel;
+#[cfg(feature = "window")]
+mod panel_bodies;
 mod parameters;
 #[cfg(feature = "window")]
 mod picture;

@@ -5,7 +5,7 @@ use bevy_egui::egui::{self, Key, accesskit::Role, vec2};
 use egui_kittest::{Harness, kittest::Queryable};
 use wriggle::{
     body::{Muscle, Muscles, Particle, ParticleId, Particles, SpineFriction, Spring, SpringId, Springs, Wave},
-    mechanics::integrators::Method,
+    mechanics::{BodyParts, integrators::Method},
     panel::{
         self, Action, BodyInfo, Ring, Setting, Settings, Traces, bodies, bridge,
         gauge::{self, Gauge, Stability},
@@ -300,6 +300,7 @@ fn traces_are_bounded_and_begin_anew_when_time_goes_back() {
         springs: vec![("A–B".into(), 1.0, 1.1)],
         masses: vec![("A".into(), if time < 400.0 { 0.0 } else { 1.0 })],
         distance: time,
+        block: None,
     };
     let body = Entity::from_raw_u32(1).unwrap();
     let mut traces = Traces::default();
@@ -340,7 +341,12 @@ fn bent() -> (Particles, Springs, Muscles, SpineFriction) {
 fn velocities_are_those_along_the_spine_and_springs_those_of_the_spine() {
     let (particles, springs, muscles, friction) = bent();
     let start = particles.center() - DVec3::X * 3.0;
-    let seen = observe(&particles, &springs, Some(&muscles), Some(&friction), start, 1.5);
+    let parts = BodyParts {
+        muscles: Some(&muscles),
+        friction: Some(&friction),
+        ..BodyParts::new(&particles, &springs, Method::default())
+    };
+    let seen = observe(&parts, start, 1.5);
     let names: Vec<_> = seen.masses.iter().map(|(name, _)| name.as_str()).collect();
     assert_eq!(names, ["A", "B", "C"], "from tail to head");
     for ((_, velocity), expected) in seen.masses.iter().zip([-0.25, 0.0, 0.5]) {

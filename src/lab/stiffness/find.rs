@@ -21,6 +21,7 @@ pub(super) fn cheapest_run(problem: &Problem, truth: &Truth, method: Method, opt
     let stick = StickRule::InStages;
     let settings = steps(problem, method, stick).into_iter().map(|dt| Setting { method, stick, dt });
     let mut short = settings.take_while(|setting| work(problem, method, setting.dt) <= MOST_WORK);
-    let good = |setting: &Setting| worst_error(problem, truth, *setting).is_some_and(|error| error <= problem.budget);
+    let fails = |error| error > problem.budget;
+    let good = |setting: &Setting| worst_error(problem, truth, *setting, fails).is_some_and(|error| !fails(error));
     short.find(good).map(|setting| measure(problem, truth, setting, options.repeats()))
 }

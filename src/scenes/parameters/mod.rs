@@ -3,6 +3,7 @@
 //! `worm.springs.stiffness` is that of all springs of the body `worm`, `worm.springs[1].stiffness` that of one. Muscles are counted in the order
 //! of the springs that they drive; `muscle`, `legs`, `weight` and `drive` are rules of a creature of the six-matrix particle system, in the order of its file. `clock.dt` and `clock.time_scale` belong to the scene.
 
+mod facts;
 mod quantity;
 mod six;
 
@@ -83,6 +84,11 @@ pub(super) struct Values {
 
 /// The elements of larger bodies can be set one by one and are not listed: nobody reads a hundred thousand springs.
 const MOST_LISTED: usize = 1000;
+
+/// The groups of a body's parameters: what stands between its name and a field in a path.
+pub fn groups() -> impl Iterator<Item = &'static str> {
+    Group::OF_BODIES.into_iter().map(Group::name)
+}
 
 /// Every parameter of the scene: the clock's, then body by body in the order of the scene. Of more than a thousand springs or particles only what sets them all.
 pub fn list(world: &mut World) -> Vec<Parameter> {

@@ -5,8 +5,8 @@ use bevy::{ecs::world::EntityRef, prelude::*};
 use super::{Kind, Parameter, six::SixQuantity};
 use crate::{
     body::{
-        BodyError, Gravity, Muscle, Muscles, Particle, ParticleId, Particles, Requirement, Rules, SpineFriction,
-        Spring, SpringId, Springs, TravelingWave, TravelingWaves,
+        BodyError, Coefficients, CoulombFriction, Gravity, MassDamping, Muscle, Muscles, Particle, ParticleId,
+        Particles, Rules, SpineFriction, Spring, SpringId, Springs, TravelingWave, TravelingWaves,
     },
     creatures::Attitude,
     physics::{Clock, StartState},
@@ -24,6 +24,9 @@ pub(super) enum Group {
     /// All waves of a strand together.
     Gait,
     Friction,
+    Coulomb,
+    /// Damping by what surrounds a body.
+    MassDamping,
     Gravity,
     /// The attitude in which a block starts.
     Block,
@@ -36,6 +39,26 @@ pub(super) enum Group {
 }
 
 impl Group {
+    /// All but the clock.
+    pub(super) const OF_BODIES: [Self; 16] = [
+        Self::Springs,
+        Self::Particles,
+        Self::Muscles,
+        Self::Waves,
+        Self::Gait,
+        Self::Friction,
+        Self::Coulomb,
+        Self::MassDamping,
+        Self::Gravity,
+        Self::Block,
+        Self::Bonds,
+        Self::Collisions,
+        Self::Muscle,
+        Self::Legs,
+        Self::Weight,
+        Self::Drive,
+    ];
+
     pub(super) fn name(self) -> &'static str {
         match self {
             Self::Clock => "clock",
@@ -45,6 +68,8 @@ impl Group {
             Self::Waves => "waves",
             Self::Gait => "gait",
             Self::Friction => "friction",
+            Self::Coulomb => "coulomb",
+            Self::MassDamping => "mass_damping",
             Self::Gravity => "gravity",
             Self::Block => "block",
             Self::Bonds => "bonds",
@@ -64,6 +89,7 @@ impl Group {
                 | Self::Particles
                 | Self::Muscles
                 | Self::Waves
+                | Self::Coulomb
                 | Self::Muscle
                 | Self::Legs
                 | Self::Weight
@@ -74,23 +100,7 @@ impl Group {
     /// Takes the group off the front of the part of a path behind the body's name.
     pub(super) fn parse(path: &str) -> (Option<Self>, &str) {
         let end = path.find(['.', '[']).unwrap_or(path.len());
-        let all = [
-            Self::Springs,
-            Self::Particles,
-            Self::Muscles,
-            Self::Waves,
-            Self::Gait,
-            Self::Friction,
-            Self::Gravity,
-            Self::Block,
-            Self::Bonds,
-            Self::Collisions,
-            Self::Muscle,
-            Self::Legs,
-            Self::Weight,
-            Self::Drive,
-        ];
-        (all.into_iter().find(|group| group.name() == &path[..end]), &path[end..])
+        (Self::OF_BODIES.into_iter().find(|group| group.name() == &path[..end]), &path[end..])
     }
 }
 
@@ -119,17 +129,19 @@ pub(super) enum Quantity {
     Isotropic,
     Brake,
     Ratchet,
+    Forward,
+    Backward,
+    Sideways,
+    DampingRate,
+    DampingPerStep,
     Gravity,
     Tilt,
     /// Of a body of the six-matrix particle system.
     Six(SixQuantity),
 }
 
-/// What is said about a quantity: group, field, what it must be, the usual range, unit and help.
-pub(super) type Facts = (Group, &'static str, Requirement, (f64, f64), &'static str, &'static str);
-
 impl Quantity {
-    pub(super) const OF_BODIES: [Self; 41] = [
+    pub(super) const OF_BODIES: [Self; 46] = [
         Self::Stiffness,
         Self::Damping,
         Self::RestLength,
@@ -150,6 +162,11 @@ impl Quantity {
         Self::Isotropic,
         Self::Brake,
         Self::Ratchet,
+        Self::Forward,
+        Self::Backward,
+        Self::Sideways,
+        Self::DampingRate,
+        Self::DampingPerStep,
         Self::Gravity,
         Self::Tilt,
         Self::Six(SixQuantity::Damping),
@@ -172,107 +189,6 @@ impl Quantity {
         Self::Six(SixQuantity::Out),
         Self::Six(SixQuantity::Reach),
     ];
-
-    fn facts(self) -> Facts {
-        use Requirement::{Finite, NonNegative, Positive};
-        const SPRINGS: Group = Group::Springs;
-        const MUSCLES: Group = Group::Muscles;
-        const WAVES: Group = Group::Waves;
-        const GAIT: Group = Group::Gait;
-        const FRICTION: Group = Group::Friction;
-        match self {
-            Self::Dt => (Group::Clock, "dt", Positive, (0.0001, 1.0), "time", "step of the integration, dt"),
-            Self::TimeScale => (
-                Group::Clock,
-                "time_scale",
-                NonNegative,
-                (0.0, 30.0),
-                "time/s",
-                "simulated time that passes in a second",
-            ),
-            Self::Stiffness => (SPRINGS, "stiffness", NonNegative, (0.0, 10.0), "force/length", "spring stiffness k"),
-            Self::Damping => (SPRINGS, "damping", NonNegative, (0.0, 10.0), "force·time/length", "spring damping D"),
-            Self::RestLength => {
-                (SPRINGS, "rest_length", Positive, (0.1, 4.0), "length", "rest length L without its muscle")
-            }
-            Self::Mass => (Group::Particles, "mass", Positive, (0.1, 10.0), "mass", "mass of a particle"),
-            Self::Amplitude => (
-                MUSCLES,
-                "amplitude",
-                NonNegative,
-                (0.0, 0.8),
-                "of L",
-                "how far a muscle drives the rest length, as a fraction of L",
-            ),
-            Self::Period => (MUSCLES, "period", Positive, (0.5, 30.0), "time", "time of one cycle of the wave"),
-            Self::Phase => (MUSCLES, "phase", Finite, (-1.0, 1.0), "cycles", "lag of the wave; positive is later"),
-            Self::Ramp => {
-                (MUSCLES, "ramp", NonNegative, (0.0, 5.0), "cycles", "cycles over which the amplitude grows from 0")
-            }
-            Self::WaveAmplitude => {
-                (WAVES, "amplitude", NonNegative, (0.0, 0.8), "of L", "how far the wave drives rest lengths, of L")
-            }
-            Self::WavePeriod => (WAVES, "period", Positive, (5.0, 120.0), "time", "time of one cycle of the wave"),
-            Self::Wavelength => (WAVES, "wavelength", Positive, (2.0, 30.0), "segments", "length of one wave"),
-            Self::Lead => (WAVES, "lead", Finite, (-0.5, 0.5), "cycles", "by how much the wave is ahead"),
-            Self::Steering => {
-                (GAIT, "steering", Finite, (-0.15, 0.15), "of L", "left longer, right shorter; positive turns right")
-            }
-            Self::GaitRamp => (
-                GAIT,
-                "ramp",
-                NonNegative,
-                (0.0, 5.0),
-                "cycles",
-                "cycles over which the muscles come to work or to rest",
-            ),
-            Self::Active => {
-                (GAIT, "active", NonNegative, (0.0, 1.0), "0 or 1", "whether the muscles work; at rest it brakes")
-            }
-            Self::Isotropic => (
-                FRICTION,
-                "isotropic",
-                NonNegative,
-                (0.0, 5.0),
-                "1/time",
-                "rate at which sliding in any direction dies away",
-            ),
-            Self::Brake => (
-                FRICTION,
-                "brake",
-                NonNegative,
-                (0.0, 5.0),
-                "1/time",
-                "least drag and side grip while the muscles rest",
-            ),
-            Self::Drag => {
-                (FRICTION, "drag", NonNegative, (0.0, 5.0), "1/time", "rate at which forward sliding dies away")
-            }
-            Self::Grip => {
-                (FRICTION, "grip", NonNegative, (0.0, 20.0), "1/time", "rate at which sideways sliding dies away")
-            }
-            Self::Ratchet => (
-                FRICTION,
-                "ratchet",
-                NonNegative,
-                (0.0, 1.0),
-                "0 or 1",
-                "scales let nothing slide back along the spine",
-            ),
-            Self::Gravity => {
-                (Group::Gravity, "gravity", NonNegative, (0.0, 1.0), "length/time²", "acceleration towards the ground")
-            }
-            Self::Tilt => (
-                Group::Block,
-                "tilt",
-                Finite,
-                (-90.0, 90.0),
-                "°",
-                "how far it leans; setting it puts it back to its start",
-            ),
-            Self::Six(six) => six.facts(),
-        }
-    }
 
     pub(super) fn group(self) -> Group {
         self.facts().0
@@ -344,6 +260,8 @@ impl Quantity {
             // Only muscles that can be told to rest need a brake.
             Group::Friction if self == Self::Brake && !body.contains::<TravelingWaves>() => 0,
             Group::Friction => usize::from(body.contains::<SpineFriction>()),
+            Group::Coulomb => body.get::<CoulombFriction>().map_or(0, |friction| friction.sets().len()),
+            Group::MassDamping => usize::from(body.get::<MassDamping>().is_some_and(|damping| self.is_of(*damping))),
             Group::Gravity => usize::from(body.contains::<Particles>() && has_springs),
             Group::Bonds | Group::Collisions | Group::Muscle | Group::Legs | Group::Weight | Group::Drive => 0,
             Group::Block => usize::from(body.contains::<Attitude>()),
@@ -379,6 +297,15 @@ impl Quantity {
             Group::Friction => {
                 body.get::<SpineFriction>().map(|friction| self.of_friction(friction)).into_iter().collect()
             }
+            Group::Coulomb => body
+                .get::<CoulombFriction>()
+                .map(|friction| friction.sets().iter().map(|&(mut set)| *self.of_coulomb(&mut set)).collect())
+                .unwrap_or_default(),
+            Group::MassDamping => body
+                .get::<MassDamping>()
+                .map(|&(MassDamping::Rate(value) | MassDamping::PerStep(value))| value)
+                .into_iter()
+                .collect(),
             Group::Gravity => vec![body.get::<Gravity>().map_or(0.0, |gravity| gravity.acceleration())],
             Group::Block => body.get::<Attitude>().map(Attitude::tilt).into_iter().collect(),
             Group::Bonds | Group::Collisions | Group::Muscle | Group::Legs | Group::Weight | Group::Drive => Vec::new(),
@@ -451,6 +378,21 @@ impl Quantity {
                         *friction = self.with_friction(friction.clone(), value)?;
                     }
                 }
+                Group::Coulomb => {
+                    if let Some(mut friction) = body.get_mut::<CoulombFriction>()
+                        && let Some(&(mut set)) = friction.sets().get(i)
+                    {
+                        *self.of_coulomb(&mut set) = value;
+                        friction.set(i, set)?;
+                    }
+                }
+                Group::MassDamping => {
+                    let damping = match self {
+                        Self::DampingPerStep => MassDamping::per_step(value)?,
+                        _ => MassDamping::rate(value)?,
+                    };
+                    body.insert(damping);
+                }
                 Group::Gravity => {
                     body.insert(Gravity::new(value)?);
                 }
@@ -492,6 +434,19 @@ impl Quantity {
             Self::Lead => &mut wave.lead,
             _ => &mut wave.amplitude,
         }
+    }
+
+    fn of_coulomb(self, set: &mut Coefficients) -> &mut f64 {
+        match self {
+            Self::Backward => &mut set.backward,
+            Self::Sideways => &mut set.sideways,
+            _ => &mut set.forward,
+        }
+    }
+
+    /// Whether the damping is given in this way.
+    fn is_of(self, damping: MassDamping) -> bool {
+        matches!(damping, MassDamping::PerStep(_)) == (self == Self::DampingPerStep)
     }
 
     fn of_gait(self, waves: &TravelingWaves) -> f64 {

@@ -2,7 +2,7 @@
 
 use bevy::{ecs::world::EntityRef, prelude::*};
 
-use super::quantity::{Facts, Group};
+use super::{facts::Facts, quantity::Group};
 use crate::body::{
     BodyError, Bonds, Collisions, Columns, Contraction, Counter, Drive, Leg, Particles, Requirement, Rule, Rules,
     Weight,
