@@ -1,7 +1,7 @@
 //! Fills the traces: once a tick from the body that the panel shows, and once a frame with what it cost.
 
 use bevy::{
-    ecs::prelude::*,
+    ecs::{prelude::*, resource::IsResource},
     time::{Real, Time},
 };
 
@@ -29,7 +29,7 @@ pub(super) fn tick(
     clock: Option<Res<Clock>>,
     cost: Option<Res<Cost>>,
     settings: Res<Settings>,
-    bodies: Query<EntityRef, With<Particles>>,
+    bodies: Query<EntityRef, (With<Particles>, Without<IsResource>)>,
     mut traces: ResMut<Traces>,
     mut meter: ResMut<Meter>,
 ) {
@@ -64,4 +64,29 @@ pub(super) fn frame(
     cost.frame += (frame.frame - cost.frame) * weight;
     cost.physics += (frame.physics - cost.physics) * weight;
     cost.steps_per_tick = meter.steps_per_tick;
+}
+
+#[cfg(test)]
+mod tests {
+    use bevy::ecs::system::RunSystemOnce;
+
+    use super::{super::bridge, *};
+    use crate::scenes;
+
+    #[test]
+    fn a_tick_is_traced_of_every_kind_of_body() {
+        for (scene, block, animal) in [("garden", 0, false), ("jelly", 1, false), ("meadow", 0, true)] {
+            let mut world = World::new();
+            world.init_resource::<Settings>();
+            world.init_resource::<bridge::Known>();
+            world.init_resource::<Traces>();
+            world.init_resource::<Meter>();
+            scenes::load(scene).and_then(|loaded| scenes::open(&mut world, loaded)).unwrap();
+            bridge::read(&mut world);
+            world.run_system_once(tick).unwrap();
+            let traces = world.resource::<Traces>();
+            let seen = (traces.time.len(), traces.blocks.len(), traces.gait.is_of_animal());
+            assert_eq!(seen, (1, block, animal), "{scene}");
+        }
+    }
 }
