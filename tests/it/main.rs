@@ -35,6 +35,7 @@ mod picture_animals;
 mod race;
 mod saving;
 mod shows;
+mod six_files;
 mod six_house;
 mod six_matrix;
 mod six_odd;

@@ -45,10 +45,17 @@ fn ticks_neighbours_and_restarts_change_no_bits() {
     assert_eq!(app.world().resource::<Clock>().step(), 600);
     assert_eq!(state(&app, &bodies), expected, "after a restart, seven steps a tick");
     assert_eq!(trail(&app), way);
+    let text = fs::read_to_string("assets/scenes/flat-strip.scene.ron").unwrap();
+    let folder = TempDir::new().unwrap();
+    let path = folder.path().join("alone.scene.ron");
     for (i, creature) in ["inchworm", "roller"].into_iter().enumerate() {
-        let (mut alone, body) = open(creature, 600);
+        let alone = |line: &&str| !line.contains("(name: ") || line.contains(&format!("name: \"{creature}\""));
+        let lines: Vec<_> = text.lines().filter(alone).collect();
+        // The line that ends the list may be gone.
+        fs::write(&path, lines.join("\n").replace(")],", "),").replace("  camera:", "  ], camera:")).unwrap();
+        let (mut alone, body) = open(path.to_str().unwrap(), 600);
         alone.update();
-        assert_eq!(state(&alone, &body)[0], expected[i], "{creature} alone");
+        assert_eq!(state(&alone, &body), [expected[i].clone()], "{creature} alone");
     }
 }
 
@@ -265,36 +272,6 @@ fn bad_files_are_told_what_would_be_right() {
         let said = said(&body);
         assert!(parts.iter().all(|part| said.contains(part)), "{body}\n{said}");
     }
-}
-
-#[test]
-fn bad_places_on_roads_are_told() {
-    let folder = TempDir::new().unwrap();
-    let path = folder.path().join("bad.scene.ron");
-    let scene = |rest: &str| {
-        fs::write(&path, format!(r#"Scene(version: 1, title: "", {rest})"#)).unwrap();
-        scenes::load(path.to_str().unwrap()).unwrap_err().to_string()
-    };
-    let roller = |rest: &str| format!(r#"creatures: [(name: "r", creature: "roller", {rest})]"#);
-    for (rest, part) in [
-        (roller("on_road: (row: 3)"), "has no road to stand on"),
-        (roller(r#"road: "rough-road", on_road: (row: 3, aside: 500)"#), "no road is below it there"),
-        (roller(r#"road: "rough-raod""#), "rough-road"),
-        (
-            r#"road: "rough-road", creatures: [(name: "w", creature: "garden-worm", on_road: (row: 3))]"#.into(),
-            "know no road",
-        ),
-    ] {
-        let said = scene(&rest);
-        assert!(said.contains(part), "{said}");
-    }
-    fs::write(
-        folder.path().join("nowhere.road.ron"),
-        "Road(version: 1, form: Course(points: [(0, 0, 0)], width: 9, spacing: 1))",
-    )
-    .unwrap();
-    let said = scene(&roller(r#"road: "nowhere""#));
-    assert!(said.contains("form.points") && said.contains("two or more"), "{said}");
 }
 
 #[test]
