@@ -221,7 +221,7 @@ fn places_that_contradict_each_other_are_named() {
         let text = RAW.replacen(good, bad, 1);
         let problem = creature_problem(&text);
         assert_says(&problem, words);
-        // All of these are on the line that was made bad, or stand in its place where nothing is left of them.
+        // Friction, which misses the spine, is on the line behind it.
         let line = 1 + text.lines().position(|line| line.contains(bad)).unwrap();
         let line = if words[0].starts_with("friction") { line + 1 } else { line };
         assert_says(&problem, &[&format!("bad.creature.ron:{line}: ")]);

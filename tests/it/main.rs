@@ -39,6 +39,7 @@ mod six_files;
 mod six_house;
 mod six_matrix;
 mod six_odd;
+mod six_roads;
 mod six_signs;
 mod stability;
 mod steering;
