@@ -7,12 +7,15 @@ use tempfile::TempDir;
 use wriggle::{
     body::{Columns, Rules},
     creatures::{Composed, Creature, Inchworm, Pose, Roller},
-    mechanics::six_matrix::{Road, RoadSearch, look},
-    physics::{BodyFrozen, Clock, Frozen, Restart, Trail, six_parts},
+    mechanics::six_matrix::{Road, RoadSearch, Stepper, look},
+    physics::{BodyFrozen, Clock, Frozen, Plan, Restart, Trail, six_parts},
     scenes::{self, SceneBodies, parameters},
 };
 
-use crate::support::{bits, particles, stepping_app};
+use crate::{
+    cli::json,
+    support::{bits, particles, stepping_app},
+};
 
 /// A shipped scene, every update so many of its steps.
 fn open(scene: &str, steps: u64) -> (App, Vec<Entity>) {
@@ -36,7 +39,10 @@ fn ticks_neighbours_and_restarts_change_no_bits() {
     let way = trail(&app);
     assert_eq!(way.points().len(), 60);
     app.world_mut().write_message(Restart);
-    app.world_mut().resource_mut::<Clock>().set_steps_per_tick(7);
+    app.world_mut().resource_mut::<Clock>().set_steps_per_tick(0);
+    app.update();
+    assert_eq!(app.world().resource::<Clock>().step(), 0);
+    assert_ne!(state(&app, &bodies), expected);
     while app.world().resource::<Clock>().step() < 600 {
         let left = 600 - app.world().resource::<Clock>().step();
         app.world_mut().resource_mut::<Clock>().set_steps_per_tick(left.min(7));
@@ -84,8 +90,15 @@ fn what_bursts_is_frozen_in_its_last_good_state_and_its_neighbour_goes_on() {
         ] {
             assert!(said[0].contains(part), "{} does not name {part}", said[0]);
         }
-        let good = particles(&app, bodies[1]);
-        assert!(good.positions().all(|x| x.is_finite()));
+        // Every bond is whole where it froze, and is not a step later.
+        let parts = six_parts(app.world().entity(bodies[1])).unwrap();
+        let positions: Vec<_> = parts.particles.positions().collect();
+        for ((i, j, _), square) in parts.bonds.relation().pairs().zip(parts.bonds.squares()) {
+            let length = positions[i].distance(positions[j]);
+            assert!(length <= 10.0 * square.sqrt(), "bond of {i} and {j} is {length} long");
+        }
+        let burst = Stepper::new(&parts).step(&parts, 0.01).unwrap_err();
+        assert_eq!(burst.particle, frozen.particle.index());
         (frozen, state(&app, &bodies))
     };
     let (first, states) = frozen(300);
@@ -130,11 +143,20 @@ fn every_constant_is_a_parameter() {
         for hidden in ["mass", "gravity", "springs"] {
             assert!(!all.iter().any(|parameter| parameter.path.contains(hidden)), "{hidden}");
         }
+        let mut before = all.clone();
         for parameter in all.iter().filter(|parameter| !parameter.path.starts_with("clock")) {
             let other = 0.5 * (parameter.range.start() + parameter.range.end()) + 0.001;
             parameters::set(app.world_mut(), &parameter.path, other).unwrap();
-            let now = parameters::list(app.world_mut()).into_iter().find(|now| now.path == parameter.path).unwrap();
-            assert_eq!(now.value, other, "{}", parameter.path);
+            let now = parameters::list(app.world_mut());
+            let at = now.iter().position(|now| now.path == parameter.path).unwrap();
+            assert_eq!(now[at].value, other, "{}", parameter.path);
+            // Nothing else has changed. All of a kind are shown by the value of the first.
+            let kind = |path: &str| path.split(['[', ']']).step_by(2).collect::<String>();
+            for (now, before) in now.iter().zip(&before) {
+                let same = now.value == before.value || kind(&now.path) == kind(&parameter.path);
+                assert!(same, "{} changed {}", parameter.path, now.path);
+            }
+            before = now;
         }
         app.update();
         assert!(app.world().get::<Rules>(bodies[0]).is_some());
@@ -220,6 +242,45 @@ fn an_app_opens_a_moment_and_stands_still_there() {
         app.update();
     }
     assert!(app.world().resource::<Clock>().step() > 0 && !app.world().resource::<Time<Virtual>>().is_paused());
+}
+
+#[test]
+fn threads_change_no_bits() {
+    let run = |threads: &str| json(&["run", "rough-road", "--for", "6", "--threads", threads]);
+    let [one, two, eight] = ["1", "2", "8"].map(run);
+    assert_eq!((&one["hash"], &one["hash"]), (&two["hash"], &eight["hash"]));
+    // A step evaluates the forces of each of both bodies once.
+    assert_eq!((one["steps"].as_u64(), one["force_evaluations"].as_u64()), (Some(600), Some(1200)));
+}
+
+#[test]
+fn the_limit_of_the_bonds_is_planned_with() {
+    let (mut app, bodies) = open("flat-strip", 1);
+    app.update();
+    for (body, limit) in bodies.iter().zip([0.0951, 0.0270]) {
+        let found = app.world().get::<Plan>(*body).unwrap().stability_limit();
+        assert!((found / limit - 1.0).abs() < 0.02, "{found}, expected {limit}");
+    }
+}
+
+#[test]
+fn components_of_another_body_freeze_it() {
+    let misfit = |with_columns: bool| {
+        let (mut app, bodies) = open("flat-strip", 1);
+        let other = app.world().get::<Rules>(bodies[1]).unwrap().clone();
+        let mut body = app.world_mut().entity_mut(bodies[0]);
+        body.insert(other);
+        if with_columns {
+            body.insert(Columns::default());
+        }
+        app.update();
+        assert!(app.world().get::<Frozen>(bodies[1]).is_none());
+        app.world().get::<Frozen>(bodies[0]).unwrap().reason.clone()
+    };
+    let said = misfit(false);
+    assert!(said.contains("its rules were made for another body; this one has 62 particles"), "{said}");
+    let said = misfit(true);
+    assert!(said.contains("its columns were made for another body"), "{said}");
 }
 
 /// What is said about a creature file.

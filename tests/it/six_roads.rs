@@ -51,22 +51,25 @@ fn courses_have_no_gaps_at_their_corners() {
         for before in [30.0, 30.7, 31.9] {
             let turn = degrees.to_radians();
             let corner = DVec3::new(before, 3.0, 0.0);
-            let end = corner + 30.0 * DVec3::new(turn.cos(), 0.1, turn.sin());
+            let (sin, cos) = libm::sincos(turn);
+            let end = corner + 30.0 * DVec3::new(cos, 0.1, sin);
+            // Away from the inside of the curve, once it has turned by so much.
+            let outwards = |angle: f64| {
+                let (sin, cos) = libm::sincos(angle);
+                DVec3::new(sin, 0.0, -cos) * turn.signum()
+            };
             let road = course(vec![(0.0, 0.0, 0.0), corner.into(), end.into()]).build().unwrap();
             // Everywhere between what goes straight across before the corner and behind it, on the outer side.
             for i in 0..=40 {
                 for away in 0..=8 {
                     let angle = turn * f64::from(i) / 40.0;
-                    let outwards = DVec3::new(angle.sin(), 0.0, -angle.cos()) * turn.signum();
-                    let point = corner + f64::from(away) * outwards;
+                    let point = corner + f64::from(away) * outwards(angle);
                     let near = road.nearest(point).unwrap().distance(point);
                     assert!(near < 1.45, "{degrees}°: {near} from {away} beside the corner, at {i} of 40");
                 }
             }
-            // And it is not heaped up: no particle has another within a third of the spacing that the inner side has not put there.
-            let outside = |x: &&DVec3| {
-                (**x - corner).dot(DVec3::new((0.5 * turn).sin(), 0.0, -(0.5 * turn).cos()) * turn.signum()) > 1.0
-            };
+            // And nothing is heaped up there.
+            let outside = |x: &&DVec3| (**x - corner).dot(outwards(0.5 * turn)) > 1.0;
             let outer: Vec<_> = road.points().iter().filter(outside).collect();
             for (i, a) in outer.iter().enumerate() {
                 for b in &outer[..i] {

@@ -3,7 +3,7 @@
 use bevy::math::DVec3;
 use wriggle::{
     body::{Beams, Sense, Table},
-    creatures::{Composed, Inchworm, RoadForm, Roller, Rough, RulePlan},
+    creatures::{Composed, Inchworm, RoadForm, Roller, Rough, RulePlan, Strip},
     mechanics::six_matrix::{Burst, RoadSearch, SixState, Stepper, look},
 };
 
@@ -132,6 +132,34 @@ fn rejected_decisions() -> [(&'static str, Roller); 6] {
         ("beams turned backwards", Roller { beams: Beams { lift: 20.0, ..beams }, ..restored }),
         ("side beams inwards", Roller { beams: Beams { down: -20.0, ..beams }, ..restored }),
     ]
+}
+
+#[test]
+fn rows_of_the_table_are_tried_from_the_last_one_up() {
+    let table = Table {
+        none: (1.0, 1.0),
+        left_side: (0.0, -1.0),
+        right_side: (-1.0, 0.0),
+        both_sides: (0.0, 0.0),
+        front: (-1.0, -1.0),
+    };
+    let creature = Roller { table, ..Roller::default() }.composed();
+    // So many columns, with their middle there.
+    for (columns, x, row, goals) in [
+        (16, -0.67, "none", table.none),
+        (10, -0.67, "both side beams", table.both_sides),
+        (12, 2.0, "only left side beam", table.left_side),
+        (12, -3.3, "only right side beam", table.right_side),
+        (12, 6.0, "left or right front beam", table.front),
+        (12, -7.0, "left or right front beam", table.front),
+        (1, 300.0, "left or right front beam", table.front),
+    ] {
+        let form = Strip { rows: 60, columns, spacing: 1.5, at: (x, 2.0, 40.0), heading: -90.0, bump: 0.0 };
+        let six = Six::on_strip(&creature, RoadForm::Strip(form));
+        let position: Vec<_> = six.particles.positions().collect();
+        let sight = look(six.drive(), &position, six.road.as_ref());
+        assert_eq!((sight.decision(), sight.goals), (row, goals), "{columns} columns at {x}: {:?}", sight.hits);
+    }
 }
 
 #[test]
