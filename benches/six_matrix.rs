@@ -26,7 +26,7 @@ struct Six {
 impl Six {
     /// A creature on a road, some way from its start.
     fn new(creature: &Composed, form: &RoadForm, road: &Road) -> Result<Self, BodyError> {
-        let pose = creature.pose_on(road, form.station(6.0), 0.0, 0.0)?;
+        let Some(pose) = creature.pose_on(road, form.station(6.0), 0.0, 0.0) else { panic!("no road is below it") };
         let body = Creature::from(creature.clone()).body(pose)?;
         let Some(six) = body.six else { panic!("a composed creature has six matrices") };
         let particles = Particles::new(body.particles.positions().map(Particle::at))?;
@@ -96,7 +96,8 @@ fn hundreds() -> App {
     clock.set_steps_per_tick(1);
     for (_, creature) in creatures() {
         for i in 0..100 {
-            let pose = good(creature.pose_on(&road, form.station(3.0 + 0.05 * f64::from(i)), 0.0, 0.0));
+            let station = form.station(3.0 + 0.05 * f64::from(i));
+            let Some(pose) = creature.pose_on(&road, station, 0.0, 0.0) else { panic!("no road is below it") };
             let body = good(Creature::from(creature.clone()).body(pose));
             body.apply(app.world_mut().spawn(road.clone()));
         }

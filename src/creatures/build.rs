@@ -126,6 +126,10 @@ impl Creature {
         if let Some(composed) = self.body.composed() {
             return self.six_body(&composed, pose);
         }
+        if self.road.is_some() {
+            let problem = "is for creatures of the six-matrix particle system, and this one has springs, which know no road; leave it out, or give a ground";
+            return Err(BodyError::Inconsistent { path: "road".into(), problem: problem.into() });
+        }
         let damping = match self.damping {
             None => None,
             Some(MassDamping::Rate(rate)) => Some(MassDamping::rate(rate)?),

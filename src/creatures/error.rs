@@ -32,10 +32,12 @@ pub enum FileError {
         problem: String,
     },
     /// Two places of a file, or of a scene and its creature, contradict each other.
-    #[error("{file}: {path}: {problem}")]
+    #[error("{file}{}: {path}: {problem}", line.map(|line| format!(":{line}")).unwrap_or_default())]
     Conflict {
         /// The file.
         file: String,
+        /// The line of the element, counted from 1; nothing where the file does not write it out.
+        line: Option<usize>,
         /// The element, such as `springs[3].ends`.
         path: String,
         /// What is wrong and what would be right.

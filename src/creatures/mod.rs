@@ -20,6 +20,7 @@ mod error;
 mod garden_worm;
 mod jelly;
 pub mod library;
+mod locate;
 mod look;
 pub(crate) mod numbers;
 mod parse;
@@ -31,6 +32,7 @@ pub use build::{Body, Pose};
 pub use error::FileError;
 pub use garden_worm::GardenWorm;
 pub use jelly::{Attitude, JellyPlan, NeighboursPlan, Rotation, SpringPlan};
+pub(crate) use locate::line_of;
 pub use look::{Look, Skin};
 pub(crate) use parse::{CurrentVersion, options, parse, version};
 pub use six::{

@@ -8,13 +8,13 @@ use std::{
 
 use bevy::math::DVec3;
 
-use super::{Camera, Placement, Props, SceneClock, SceneFile, StepSize, parameters, roads::Roads, spawn};
+use super::{Camera, Placement, Props, SceneClock, SceneFile, StepSize, fits, parameters, roads::Roads, spawn};
 use crate::{
     body::{BodyError, Ground, LEAST_REST_FRACTION, Muscles, TravelingWaves},
     creatures::{
         Body, Creature, FileError, MOST_PARTICLES, Pose, RoadForm,
         library::{self, CREATURE, SCENE, Source},
-        parse,
+        line_of, parse,
     },
     mechanics::{
         ground_distance,
@@ -55,22 +55,20 @@ impl LoadedScene {
 
     /// Builds the bodies in the order of the scene.
     pub(super) fn bodies(&self) -> impl Iterator<Item = Result<Body, FileError>> + '_ {
-        self.file.creatures.iter().zip(&self.creatures).map(|(placement, (source, creature))| {
+        self.file.creatures.iter().zip(&self.creatures).enumerate().map(|(i, (placement, (source, creature)))| {
             let pose = Pose { at: DVec3::from(placement.at), heading: placement.heading };
-            let pose = match (placement.on_road, self.road_of(placement), creature.body.composed()) {
-                (None, ..) => pose,
-                (Some(place), Some((form, road)), Some(composed)) => {
+            // That there is a road, and a creature for it, was checked before.
+            let place = placement.on_road.zip(self.road_of(placement)).zip(creature.body.composed());
+            let pose = match place {
+                None => pose,
+                Some(((place, (form, road)), composed)) => {
                     let stands = composed.pose_on(road, form.station(place.row), place.aside, placement.heading);
-                    let stands = stands.map_err(|error| conflict(&self.source, error))?;
+                    let stands = stands.ok_or_else(|| {
+                        let problem =
+                            format!("no road is below `{}` there; give another row, or less aside", placement.name);
+                        scene_conflict(self, format!("creatures[{i}].on_road"), problem)
+                    })?;
                     Pose { at: stands.at + pose.at, ..stands }
-                }
-                (Some(_), None, _) => {
-                    let problem = format!("`{}` has no road to stand on; give road: \"NAME\"", placement.name);
-                    return Err(scene_conflict(self, "on_road".into(), problem));
-                }
-                (Some(_), _, None) => {
-                    let problem = format!("`{}` has springs, which know no road; give `at`", placement.name);
-                    return Err(scene_conflict(self, "on_road".into(), problem));
                 }
             };
             creature.body(pose).map_err(|error| conflict(source, error))
@@ -199,6 +197,7 @@ fn check_truth(scene: &LoadedScene) -> Result<(), FileError> {
 fn check(mut scene: LoadedScene) -> Result<LoadedScene, FileError> {
     check_names(&scene)?;
     check_truth(&scene)?;
+    fits::check(&scene)?;
     let particles: usize = scene.creatures.iter().map(|(_, creature)| creature.particle_count()).sum();
     if particles > MOST_PARTICLES {
         return Err(scene_conflict(
@@ -325,7 +324,8 @@ fn check_set(scene: &LoadedScene) -> Result<(), FileError> {
 }
 
 pub(super) fn scene_conflict(scene: &LoadedScene, path: String, problem: String) -> FileError {
-    FileError::Conflict { file: scene.source.to_string(), path, problem }
+    let file = scene.source.to_string();
+    FileError::Conflict { file, line: line_in(&scene.source, &path), path, problem }
 }
 
 /// What a body refuses, with the name of its file.
@@ -333,7 +333,15 @@ pub(super) fn conflict(source: &Source, error: BodyError) -> FileError {
     let file = source.to_string();
     let text = error.to_string();
     match text.split_once(": ") {
-        Some((path, problem)) => FileError::Conflict { file, path: path.into(), problem: problem.into() },
+        Some((path, problem)) => {
+            FileError::Conflict { file, line: line_in(source, path), path: path.into(), problem: problem.into() }
+        }
         None => FileError::Unreadable { file, problem: text },
     }
+}
+
+/// The line of a file on which the field at `path` is; paths of creatures leave out that it is in the body.
+fn line_in(source: &Source, path: &str) -> Option<usize> {
+    let text = library::read(SCENE, source).ok()?;
+    line_of(&text, path).or_else(|| line_of(&text, &format!("body.{path}")))
 }

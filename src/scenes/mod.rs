@@ -4,6 +4,7 @@
 //! it there. [`ScenesPlugin`] does both when asked by [`SceneChange`] and reports a bad file as [`SceneProblem`].
 
 mod file;
+mod fits;
 pub mod garden;
 mod load;
 pub mod parameters;

@@ -7,7 +7,7 @@ use bevy::{
     reflect::Reflect,
 };
 
-use super::{FileError, LoadedScene, Props, SceneFile, garden, parameters, race};
+use super::{FileError, LoadedScene, Props, SceneFile, garden, load::scene_conflict, parameters, race};
 use crate::{body::Gravity, physics::Clock};
 
 /// The scene that is open. Replaced when a scene is opened or reloaded, and not when a parameter changes.
@@ -69,11 +69,8 @@ pub(super) fn scratch(scene: &LoadedScene) -> Result<World, FileError> {
 }
 
 fn clock(scene: &LoadedScene) -> Result<Clock, FileError> {
-    Clock::new(scene.file.clock.dt(), scene.file.clock.time_scale).map_err(|error| FileError::Conflict {
-        file: scene.source.to_string(),
-        path: "clock".into(),
-        problem: error.to_string(),
-    })
+    Clock::new(scene.file.clock.dt(), scene.file.clock.time_scale)
+        .map_err(|error| scene_conflict(scene, "clock".into(), error.to_string()))
 }
 
 fn spawn(world: &mut World, scene: &LoadedScene, bodies: Vec<crate::creatures::Body>) {

@@ -169,13 +169,19 @@ fn the_picked_roller_makes_the_first_curve_of_rough_road() {
     let form = RoadForm::Rough(Rough::default());
     let road = form.build().unwrap();
     let roller = Six::on_road(&Roller::default().composed(), &form, &road, 3.5, 1.0, 0.0);
+    // Chaotic: a change of 1e-13 shows at step 1490. That 10.8, 45.4 and 86.0 are met to the last digit therefore tells that this is the run of the reference,
+    // which has 37.5 at step 500. There is no such place in it. The roller leaves the inner edge of the way into the curve for the way out of it, where s, the
+    // nearest place of the middle, leaps from 25.5 (step 286) over to 39.1 (step 290); from there to step 500 it stays between 38.4 and 39.3, less than 1.5 from
+    // the middle at the end, so that other ways to measure differ little: at step 500 the nearest place in 3-D is 39.0, the nearest ring 38.7, the arc of
+    // the curve itself in place of the line through its rings 39.3, in 3-D 39.6, the mean of s over all particles 38.8, and of the axle or the
+    // wheels alone 38.9 and 38.7. Its axle's ends are at 31.3 and 42.2.
     roller
         .run(1500, |step, state| {
             let way = road.way(state.center());
-            // Chaotic: a change of 1e-13 shows at step 1490.
             for (at, expected) in [(0, 10.8), (500, 39.3), (1000, 45.4), (1500, 86.0)] {
-                assert!(step != at || (way - expected).abs() < 0.5, "step {step}: {way}, expected {expected}");
+                assert!(step != at || (way - expected).abs() < 0.05, "step {step}: {way}, expected {expected}");
             }
+            assert!(!(25.8..38.2).contains(&way), "step {step}: {way}");
             let (left, right) = look(roller.drive(), &state.position, Some(&road)).goals;
             assert!(left * right >= 0.0, "step {step}: wheels are driven in opposite directions");
         })

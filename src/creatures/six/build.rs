@@ -129,11 +129,8 @@ impl Shape {
 
 impl Composed {
     /// The pose in which it stands on a road: its middle over a place `aside` to the right of the road's middle, its front the way the road goes and then
-    /// turned by `turn` degrees, and so low that one of its particles touches the road.
-    ///
-    /// # Errors
-    /// If there is no road below it.
-    pub fn pose_on(&self, road: &Road, station: Station, aside: f64, turn: f64) -> Result<Pose, BodyError> {
+    /// turned by `turn` degrees, and so low that one of its particles touches the road. Nothing where no road is below it.
+    pub fn pose_on(&self, road: &Road, station: Station, aside: f64, turn: f64) -> Option<Pose> {
         let (rest, (fx, _, fz)) = (self.rest(), self.forward);
         let ahead = station.ahead;
         let heading = libm::atan2(fx * ahead.z - fz * ahead.x, fx * ahead.x + fz * ahead.z).to_degrees() + turn;
@@ -146,11 +143,8 @@ impl Composed {
         let lowest = rest.iter().map(|x| x.y).fold(f64::INFINITY, f64::min);
         let at = over - lowest * DVec3::Y;
         let places: Vec<_> = rest.iter().map(|x| pose.turn((*x).into()) + at).collect();
-        let down = lowered(&places, road.points()).ok_or_else(|| {
-            let problem = "no road is below it there; give another row, or less aside";
-            wrong("on_road", problem.into())
-        })?;
-        Ok(Pose { at: at - down * DVec3::Y, heading })
+        let down = lowered(&places, road.points())?;
+        Some(Pose { at: at - down * DVec3::Y, heading })
     }
 }
 

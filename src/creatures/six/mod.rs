@@ -4,6 +4,7 @@
 
 mod build;
 mod composed;
+mod course;
 mod inchworm;
 mod roads;
 mod roller;
@@ -13,8 +14,9 @@ pub use composed::{
     Composed, DrivePlan, GroupPlan, LegPlan, MusclePlan, PairPlan, ParticlePlace, RangePlace, RulePlan, Shape, SixSkin,
     WeightPlan, WheelPlan,
 };
+pub use course::Course;
 pub use inchworm::Inchworm;
-pub use roads::{Course, Height, Helix, RoadFile, RoadForm, Rough, Station, Strip};
+pub use roads::{Height, Helix, RoadFile, RoadForm, Rough, Station, Strip};
 pub use roller::Roller;
 
 /// The most particles of a composed creature: every pair of them is asked for bonds and collisions.

@@ -5,8 +5,9 @@ use core::f64::consts::{PI, TAU};
 use bevy::math::DVec3;
 use serde::{Deserialize, Serialize};
 
+use super::Course;
 use crate::{
-    body::{BodyError, Requirement, check},
+    body::BodyError,
     creatures::{MOST_PARTICLES, numbers, parse},
     mechanics::six_matrix::Road,
 };
@@ -121,23 +122,6 @@ pub struct Helix {
     pub spacing: f64,
 }
 
-/// A road along points, round at none of them: give many where it is to bend.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Course {
-    /// The points of its middle, two or more.
-    pub points: Vec<(f64, f64, f64)>,
-    /// Its width, above zero.
-    #[serde(deserialize_with = "numbers::positive")]
-    pub width: f64,
-    /// From row to row, and from particle to particle in a row, above zero.
-    #[serde(deserialize_with = "numbers::positive")]
-    pub spacing: f64,
-    /// How many particles stand in a ring as wide as the road, as on Rough Road, in place of each row. Left out: none, a row goes straight across.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub ring: Option<u32>,
-}
-
 impl Default for Rough {
     fn default() -> Self {
         Self { height: Height::Valley, bump: -0.5, middle: (-8.0, -8.0), signs: (1.0, 1.0), rings: 60, ring: 30 }
@@ -168,21 +152,20 @@ impl RoadForm {
     pub fn build(&self) -> Result<Road, BodyError> {
         let (rows, each) = self.counts()?;
         let count = rows.saturating_mul(each);
-        if count > MOST_PARTICLES {
-            return Err(BodyError::Inconsistent {
-                path: "form".into(),
-                problem: format!("comes to {count} particles; a road has at most {MOST_PARTICLES}"),
-            });
+        check_count(count)?;
+        let particles = (0..rows).flat_map(|row| (0..each).map(move |column| self.particle(row, each, column)));
+        let mut points: Vec<_> = particles.collect();
+        if let Self::Course(course) = self {
+            points.extend(course.corners(rows, each).take(MOST_PARTICLES - count + 1));
+            check_count(points.len())?;
         }
-        let points = (0..rows).flat_map(|row| (0..each).map(move |column| self.particle(row, each, column)));
         // The middle goes on to the end of the last row's stretch, as it begins at the start of the first.
         let line = (0..=rows).map(|row| self.station(row as f64).middle);
-        Road::new(points.collect(), if rows == 0 { Vec::new() } else { line.collect() })
+        Road::new(points, if rows == 0 { Vec::new() } else { line.collect() })
     }
 
     /// How many rows it has, and how many particles in each.
     fn counts(&self) -> Result<(usize, usize), BodyError> {
-        let across = |width: f64, spacing: f64| (width / spacing).round().max(0.0) as usize + 1;
         match self {
             Self::Strip(strip) => Ok((strip.rows as usize, strip.columns as usize)),
             Self::Rough(rough) => Ok((rough.rings as usize, rough.ring as usize)),
@@ -190,20 +173,7 @@ impl RoadForm {
                 let length = TAU * helix.turns * helix.radius.hypot(helix.rise / TAU);
                 Ok(((length / helix.spacing).ceil() as usize, helix.columns as usize))
             }
-            Self::Course(course) => {
-                for (i, &(x, y, z)) in course.points.iter().enumerate() {
-                    for value in [x, y, z] {
-                        check(value, Requirement::Finite, || format!("form.points[{i}]"))?;
-                    }
-                }
-                let length = course.length();
-                if course.points.len() < 2 || length == 0.0 {
-                    let problem = "lead nowhere; give two or more that are apart".into();
-                    return Err(BodyError::Inconsistent { path: "form.points".into(), problem });
-                }
-                let each = course.ring.map_or_else(|| across(course.width, course.spacing), |ring| ring as usize);
-                Ok(((length / course.spacing).ceil() as usize, each))
-            }
+            Self::Course(course) => course.counts(),
         }
     }
 
@@ -233,10 +203,7 @@ impl RoadForm {
             Self::Helix(helix) => helix.spacing,
             Self::Course(course) => match course.ring {
                 None => course.spacing,
-                Some(_) => {
-                    let (sin, cos) = libm::sincos(TAU * column as f64 / each as f64);
-                    return self.station(row as f64).middle + 0.5 * course.width * DVec3::new(cos, 0.0, sin);
-                }
+                Some(_) => return course.on_ring(row, each, column),
             },
         };
         let place = self.station(row as f64);
@@ -247,6 +214,15 @@ impl RoadForm {
         };
         place.middle + aside * place.right() - lower * DVec3::Y
     }
+}
+
+/// Refuses roads of too many particles.
+fn check_count(count: usize) -> Result<(), BodyError> {
+    if count <= MOST_PARTICLES {
+        return Ok(());
+    }
+    let problem = format!("comes to {count} particles or more; a road has at most {MOST_PARTICLES}");
+    Err(BodyError::Inconsistent { path: "form".into(), problem })
 }
 
 impl Rough {
@@ -277,34 +253,6 @@ impl Rough {
         let (sin, cos) = libm::sincos(2.0 * column as f64 * (PI / 30.0));
         let ring = 8.0 * DVec3::new(self.signs.0 * cos, 0.0, self.signs.1 * sin);
         self.station(row as f64).middle + DVec3::new(0.0, bump, 0.0) + ring
-    }
-}
-
-impl Course {
-    fn pieces(&self) -> impl Iterator<Item = [DVec3; 2]> + '_ {
-        self.points.windows(2).map(|ends| [DVec3::from(ends[0]), DVec3::from(ends[1])])
-    }
-
-    fn length(&self) -> f64 {
-        self.pieces().map(|[from, to]| from.distance(to)).sum()
-    }
-
-    /// So far along its points; beyond its end straight on.
-    fn station(&self, way: f64) -> Station {
-        let (mut left, mut place) = (way, Station { middle: DVec3::ZERO, ahead: DVec3::X });
-        for [from, to] in self.pieces() {
-            let length = from.distance(to);
-            if length == 0.0 {
-                continue;
-            }
-            let ahead = (to - from).with_y(0.0).normalize_or(place.ahead);
-            place = Station { middle: from + (to - from) * (left / length), ahead };
-            if left <= length {
-                break;
-            }
-            left -= length;
-        }
-        place
     }
 }
 
