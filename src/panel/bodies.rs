@@ -9,8 +9,20 @@ use super::{
 };
 
 /// The parameters that one plays with, in order; the others are folded away below them.
-const FIRST: [&str; 10] =
-    ["stiffness", "damping", "mass", "rest_length", "amplitude", "period", "phase", "drag", "grip", "ratchet"];
+const FIRST: [&str; 12] = [
+    "tilt",
+    "friction",
+    "stiffness",
+    "damping",
+    "mass",
+    "rest_length",
+    "amplitude",
+    "period",
+    "phase",
+    "drag",
+    "grip",
+    "ratchet",
+];
 
 /// At most this many single elements of a parameter are shown: beyond it a file is the better place.
 const MOST_ELEMENTS: usize = 48;

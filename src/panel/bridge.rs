@@ -19,7 +19,7 @@ use super::{
     traces::Traces,
 };
 use crate::{
-    body::Particles,
+    body::{Particles, Rules},
     creatures::library,
     mechanics::integrators::Method,
     physics::{BodyFrozen, Clock, Frozen, Plan, Restart, Shown, Work},
@@ -161,6 +161,8 @@ fn read_parameters(world: &mut World, settings: &mut Settings, known: &mut Known
         settings.parameters.push(setting);
     }
     settings.method = parameters::method(world);
+    settings.without_method = world.query_filtered::<(), (With<Rules>, Without<Method>)>().iter(world).next().is_some()
+        && world.query_filtered::<(), (With<Particles>, With<Method>)>().iter(world).next().is_none();
     known.selected = settings.selected;
     known.read_at = world.get_resource::<Time<Real>>().map(|time| time.elapsed_secs_f64());
 }

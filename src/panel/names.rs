@@ -49,6 +49,9 @@ impl Name {
         use Requirement::{Finite, NonNegative, Positive};
         let path = Path::parse(path);
         let (label, requirement) = match path.field {
+            "stiffness" if path.group == "bonds" => ("stiffness of bonds", NonNegative),
+            "stiffness" if path.group == "collisions" => ("stiffness of collisions", NonNegative),
+            "friction" => ("friction of the road", NonNegative),
             "stiffness" => ("stiffness k", NonNegative),
             "damping" => ("damping D", NonNegative),
             "rest_length" => ("rest length L", Positive),

@@ -20,11 +20,11 @@ pub fn section(ui: &mut egui::Ui, settings: &mut Settings, traces: &Traces) {
         ui.weak("The plots begin with the first tick.");
     } else {
         let shown = span(settings, traces);
-        if traces.blocks.is_empty() {
+        if !traces.blocks.is_empty() {
+            block(ui, traces, shown);
+        } else if !traces.masses.is_empty() {
             lengths(ui, traces, shown);
             velocities(ui, traces, shown);
-        } else {
-            block(ui, traces, shown);
         }
         distance(ui, traces, shown);
         gait::section(ui, &traces.gait);
@@ -67,17 +67,18 @@ fn velocities(ui: &mut egui::Ui, traces: &Traces, shown: (f64, f64)) {
 
 /// What a block on a grid has in place of a spine.
 fn block(ui: &mut egui::Ui, traces: &Traces, shown: (f64, f64)) {
-    type Plotted = (&'static str, &'static str, fn(&Block) -> f64);
+    /// Id, title, what is plotted, and the values that are shown at least, so that noise looks like noise.
+    type Plotted = (&'static str, &'static str, fn(&Block) -> f64, [f64; 2]);
     let plots: [Plotted; 4] = [
-        ("shape", "shape error (spacings)", |block| block.shape.shape_error),
-        ("volume", "volume (1: undeformed)", |block| block.shape.volume.unwrap_or(1.0)),
-        ("inverted", "cells inside out", |block| block.shape.inverted as f64),
-        ("energy", "energy: kinetic, elastic and of height", |block| block.energy),
+        ("shape", "shape error (spacings)", |block| block.shape.shape_error, [0.0, 0.1]),
+        ("volume", "volume (1: undeformed)", |block| block.shape.volume.unwrap_or(1.0), [0.9, 1.1]),
+        ("inverted", "cells inside out", |block| block.shape.inverted as f64, [0.0, 1.0]),
+        ("energy", "energy: kinetic, elastic and of height", |block| block.energy, [0.0, 1e-6]),
     ];
-    for ((id, title, value), color) in plots.into_iter().zip(SERIES) {
+    for ((id, title, value, least), color) in plots.into_iter().zip(SERIES) {
         let now = traces.blocks.last().map(value).unwrap_or_default();
         legend(ui, &format!("{title}: {now:.3}"), []);
-        show(ui, id, shown, |plot| {
+        show_over(ui, id, shown, &least, |plot| {
             let line = traces.time.iter().zip(traces.blocks.iter()).map(|(&time, block)| [time, value(block)]);
             plot.line(Line::new(title, line.collect::<PlotPoints<'_>>()).color(color).width(1.8));
         });
@@ -128,13 +129,27 @@ fn legend<'a>(ui: &mut egui::Ui, title: &str, names: impl IntoIterator<Item = &'
 }
 
 /// A plot over `span`, as high as its lines ask for.
-fn show<'a>(ui: &mut egui::Ui, id: &str, (start, end): (f64, f64), draw: impl FnOnce(&mut PlotUi<'a>) + 'a) {
+fn show<'a>(ui: &mut egui::Ui, id: &str, span: (f64, f64), draw: impl FnOnce(&mut PlotUi<'a>) + 'a) {
+    show_over(ui, id, span, &[], draw);
+}
+
+/// A plot over `span`, as high as its lines and the values `least` ask for.
+fn show_over<'a>(
+    ui: &mut egui::Ui,
+    id: &str,
+    (start, end): (f64, f64),
+    least: &[f64],
+    draw: impl FnOnce(&mut PlotUi<'a>) + 'a,
+) {
     let font = FontId::proportional(10.0);
     let axes = [AxisHints::new_x(), AxisHints::new_y().min_thickness(26.0)]
         .map(|axis| axis.tick_label_font(font.clone()).tick_label_color(Color32::from_gray(0x90)));
     let [x, y] = axes;
     ui.visuals_mut().extreme_bg_color = colors::WELL;
-    Plot::new(id.to_string())
+    let plot = Plot::new(id.to_string());
+    least
+        .iter()
+        .fold(plot, |plot, value| plot.include_y(*value))
         .height(HEIGHT)
         .width(ui.available_width() - 2.0)
         .custom_x_axes(vec![x])

@@ -143,7 +143,9 @@ fn control(ui: &mut egui::Ui, setting: &mut Setting, mixed: bool) -> Option<Edit
         return response.changed().then_some(Edit::Value(f64::from(u8::from(on))));
     }
     let shown = if mixed { "mixed".into() } else { setting.text() };
-    let entered = field(ui, &mut setting.draft, shown, &setting.label.clone(), FIELD)?;
+    let label = setting.label.clone();
+    // Two groups of a body may have parameters of one name.
+    let entered = ui.push_id(&setting.path, |ui| field(ui, &mut setting.draft, shown, &label, FIELD)).inner?;
     if !mixed && entered == setting.text() {
         return None;
     }

@@ -7,7 +7,7 @@ use bevy::{
 
 use super::{
     settings::Settings,
-    traces::{Frame, Traces, observe},
+    traces::{Frame, Observation, Traces, observe},
 };
 use crate::{
     body::Particles,
@@ -40,8 +40,14 @@ pub(super) fn tick(
     let Some(clock) = clock else { return };
     let Some(body) = settings.body().map(|body| body.entity) else { return };
     let Ok(entity) = bodies.get(body) else { return };
-    let Some(parts) = body_parts(entity) else { return };
-    let start = entity.get::<StartState>().map_or_else(|| parts.particles.center(), |start| start.0.center());
+    let Some(particles) = entity.get::<Particles>() else { return };
+    let start = entity.get::<StartState>().map_or_else(|| particles.center(), |start| start.0.center());
+    let Some(parts) = body_parts(entity) else {
+        // The six-matrix particle system has no springs and no spine.
+        let distance = particles.center().distance(start);
+        traces.record(body, &Observation { time: clock.time(), distance, ..Observation::default() });
+        return;
+    };
     traces.record(body, &observe(&parts, start, clock.time()));
     traces.gait.look(body, &parts, &clock);
 }
@@ -75,7 +81,9 @@ mod tests {
 
     #[test]
     fn a_tick_is_traced_of_every_kind_of_body() {
-        for (scene, block, animal) in [("garden", 0, false), ("jelly", 1, false), ("meadow", 0, true)] {
+        for (scene, block, animal) in
+            [("garden", 0, false), ("jelly", 1, false), ("meadow", 0, true), ("rough-road", 0, false)]
+        {
             let mut world = World::new();
             world.init_resource::<Settings>();
             world.init_resource::<bridge::Known>();

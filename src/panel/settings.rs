@@ -26,6 +26,8 @@ pub struct Settings {
     pub together: bool,
     /// The method of the scene.
     pub method: Method,
+    /// No body of the scene has a method: they follow the rules of the six-matrix particle system.
+    pub without_method: bool,
     /// The work-precision chart of the scene.
     pub chart: ChartState,
     /// The runners of a race, the truth first; none where there is no race.

@@ -45,7 +45,9 @@ pub fn section(ui: &mut egui::Ui, settings: &mut Settings) {
     parameter(ui, settings, DT);
     steps_per_tick(ui, settings);
     // In a race each lane has its own.
-    if settings.race.is_empty() {
+    if settings.without_method {
+        ui.weak("The six-matrix particle system has one rule of motion.");
+    } else if settings.race.is_empty() {
         method(ui, settings);
     }
 }

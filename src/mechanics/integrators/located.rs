@@ -83,6 +83,10 @@ impl<S: Staged, const D: usize> Integrator<f64, D> for Located<S, D> {
         let (mut done, mut last) = (0.0, None);
         for _ in 0..EVENTS_A_MASS * self.modes.len() {
             let left = model.dt - done;
+            // The pieces up to an event at the very end may add up to more than the step, by a rounding error.
+            if left <= 0.0 {
+                break;
+            }
             self.start.clone_from(state);
             self.piece(model, state, time + done, left, last);
             let Some((at, event)) = self.first_event(model, state, left) else {
