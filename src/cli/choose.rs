@@ -16,6 +16,9 @@ use crate::{
 pub(super) struct ChooseArguments {
     /// A scene or creature by name, or a file (`*.scene.ron`, `*.creature.ron`)
     scene: String,
+    /// Look no further than for the cheapest: faster, and without the frontier
+    #[arg(long)]
+    cheapest: bool,
     /// Print what was found as one JSON object
     #[arg(long)]
     json: bool,
@@ -30,7 +33,8 @@ pub(super) fn choose(arguments: &ChooseArguments) -> Result<Outcome, CliError> {
     let bar = progress();
     bar.set_message("reference");
     let truth = Truth::of(&problem, &Cache::of_platform())?;
-    let choice = find(&problem, &truth, Search::Frontier, &mut |done, total, what| {
+    let search = if arguments.cheapest { Search::Cheapest } else { Search::Frontier };
+    let choice = find(&problem, &truth, search, &mut |done, total, what| {
         bar.set_length(total as u64);
         bar.set_position(done as u64);
         bar.set_message(what.to_owned());
@@ -41,12 +45,12 @@ pub(super) fn choose(arguments: &ChooseArguments) -> Result<Outcome, CliError> {
         let text = serde_json::to_string_pretty(&choice).map_err(|error| CliError::stdout(error.into()))?;
         writeln!(out, "{text}").and_then(|()| out.flush()).map_err(CliError::stdout)?;
     } else {
-        print(&mut out, &choice).and_then(|()| out.flush()).map_err(CliError::stdout)?;
+        print(&mut out, &choice, search).and_then(|()| out.flush()).map_err(CliError::stdout)?;
     }
     Ok(Outcome::Done)
 }
 
-fn print(out: &mut impl Write, found: &Choice) -> io::Result<()> {
+fn print(out: &mut impl Write, found: &Choice, search: Search) -> io::Result<()> {
     let Choice { scene, budget, duration, .. } = found;
     match found.unit {
         Unit::Length => writeln!(out, "{scene}: an error of at most {budget:.4e} until t = {duration}")?,
@@ -60,9 +64,11 @@ fn print(out: &mut impl Write, found: &Choice) -> io::Result<()> {
             )?;
         }
     }
-    let mut rows = vec![vec!["  frontier".to_owned()]];
-    rows.push(["  method", "friction", "dt", "cost", "error", "of budget"].map(String::from).to_vec());
-    rows.extend(found.frontier.iter().map(|candidate| row(candidate, found)));
+    let mut rows = vec![["  method", "friction", "dt", "cost", "error", "of budget"].map(String::from).to_vec()];
+    if search == Search::Frontier {
+        rows.insert(0, vec!["  frontier".to_owned()]);
+        rows.extend(found.frontier.iter().map(|candidate| row(candidate, found)));
+    }
     let document = if found.document.is_some() { ", and the document's" } else { "" };
     rows.push(vec![format!("  the scene's own setting{document}")]);
     rows.extend(core::iter::once(&found.own).chain(&found.document).map(|candidate| row(candidate, found)));

@@ -99,6 +99,10 @@ fn the_command_prints_its_choice_and_keeps_the_reference() {
     let methods = found["frontier"].as_array().unwrap().iter().map(|row| row["setting"]["method"].as_str().unwrap());
     let said = text.split("cheapest within the budget").nth(1).unwrap_or_default();
     assert!(methods.into_iter().any(|method| said.contains(method)), "{text}");
+    // Without the frontier the choice is the same.
+    let output = wriggle(&["choose", "quick.creature.ron", "--cheapest"]);
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert!(text.contains("cheapest within the budget") && !text.contains("frontier"), "{text}");
     // A scene that is not there is the same error as everywhere.
     let said = |command| String::from_utf8(wriggle(&[command, "gardn"]).stderr).unwrap();
     assert_eq!(wriggle(&["choose", "gardn"]).status.code(), Some(2));
@@ -137,6 +141,9 @@ fn is_well_chosen(name: &str) {
     assert!(setting.dt <= 0.5 * limit, "{name}: {} of {limit}", setting.dt);
 }
 
+/// Scenes that are there to show what no method repeats: waves that stand and grow, and a worm that buckles at a wall.
+const NOT_REPRODUCIBLE: [&str; 2] = ["standing-waves", "wall"];
+
 /// The shipped scenes whose settings are chosen, with or without strands. The document's preset is what the document says, and a race is about what is
 /// not chosen.
 fn chosen(with_strands: bool) -> impl Iterator<Item = String> {
@@ -145,7 +152,10 @@ fn chosen(with_strands: bool) -> impl Iterator<Item = String> {
         // The six-matrix particle system has one step and no method.
         let Ok(problem) = Problem::of(&scene) else { return false };
         let strands = problem.bodies.iter().any(|body| body.strand.is_some());
-        name != "document" && scene.file.truth.is_none() && strands == with_strands
+        name != "document"
+            && !NOT_REPRODUCIBLE.contains(&name.as_str())
+            && scene.file.truth.is_none()
+            && strands == with_strands
     })
 }
 
