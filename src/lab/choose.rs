@@ -95,7 +95,7 @@ pub fn choose(
 ) -> Result<Choice, LabError> {
     let (unit, budget) = (truth.unit(), truth.budget(problem));
     let judge = Judge { problem, truth, budget, evaluation: seconds_an_evaluation(problem) };
-    let mut methods: Vec<_> = Method::ALL.into_iter().filter(|method| truth.may_judge(*method)).collect();
+    let mut methods: Vec<_> = Method::ALL.into_iter().filter(|method| truth.may_judge(problem, *method)).collect();
     // Those that are likely to be cheap come first, so that the others need not be followed far.
     methods.sort_by_key(|method| core::cmp::Reverse(method.about().order));
     let mut candidates = Vec::new();

@@ -249,6 +249,11 @@ impl Problem {
         (1..=SAMPLES).map(|i| self.duration * (i as f64 / SAMPLES as f64)).collect()
     }
 
+    /// Whether a method can step every body.
+    pub(super) fn can_be_stepped_by(&self, method: Method) -> bool {
+        self.bodies.iter().all(|body| body.parts(method, StickRule::InStages).refused_by_method().is_none())
+    }
+
     /// The largest step of a method that is stable for every body; infinite where none is unstable.
     pub fn stability_limit(&self, method: Method, stick: StickRule) -> f64 {
         self.bodies.iter().map(|body| body.stability_limit(method, stick)).fold(f64::INFINITY, f64::min)

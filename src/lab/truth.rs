@@ -77,8 +77,9 @@ impl Truth {
         }
     }
 
-    /// Whether a method may be measured. One that tells the truth may not be judged by it.
-    pub(super) fn may_judge(&self, method: Method) -> bool {
-        matches!(self, Self::Positions(_)) || method != GaitSpeeds::METHOD
+    /// Whether a method can be measured: it can step every body, and does not tell the truth itself.
+    pub(super) fn may_judge(&self, problem: &Problem, method: Method) -> bool {
+        let is_other = matches!(self, Self::Positions(_)) || method != GaitSpeeds::METHOD;
+        is_other && problem.can_be_stepped_by(method)
     }
 }

@@ -77,6 +77,23 @@ impl<'a> BodyParts<'a> {
         }
     }
 
+    /// Why its method cannot step the body at all, if it cannot.
+    pub fn refused_by_method(&self) -> Option<&'static str> {
+        if self.method != Method::ExactFlow {
+            None
+        } else if self.tearing.is_some() {
+            Some("ExactFlow steps no springs that tear")
+        } else if self.friction.is_some_and(|friction| friction.isotropic() > 0.0) {
+            Some("ExactFlow knows no isotropic friction")
+        } else if self.coulomb.is_some() {
+            Some("ExactFlow does not locate the events of Coulomb friction")
+        } else if !self.on_axis() {
+            Some("it is not on an axis along x: ExactFlow takes no gravity, no ground, and no mass beside the line")
+        } else {
+            None
+        }
+    }
+
     /// Whether the body lies on a line along x and nothing can move it off: no gravity, no ground, every y and z the same and at rest. One
     /// dimension is enough to step it then.
     pub fn on_axis(&self) -> bool {

@@ -249,22 +249,11 @@ fn misfit(body: &BodyParts<'_>) -> Option<String> {
             body.springs.len()
         ));
     }
-    if body.tearing.is_some() && (body.strand.is_some() || body.method == Method::ExactFlow) {
-        return Some("the springs of a strand, and those of a body that ExactFlow steps, cannot tear".into());
+    if body.tearing.is_some() && body.strand.is_some() {
+        return Some("the springs of a strand cannot tear".into());
     }
     if body.waves.is_some() && body.strand.is_none() {
         return Some("its waves need a strand to travel along".into());
     }
-    if body.method == Method::ExactFlow && body.friction.is_some_and(|friction| friction.isotropic() > 0.0) {
-        return Some("ExactFlow knows no isotropic friction".into());
-    }
-    if body.method == Method::ExactFlow && body.coulomb.is_some() {
-        return Some("ExactFlow does not locate the events of Coulomb friction".into());
-    }
-    if body.method == Method::ExactFlow && !body.on_axis() {
-        let problem =
-            "it is not on an axis along x: ExactFlow takes no gravity, no ground, and no mass beside the line";
-        return Some(problem.into());
-    }
-    None
+    body.refused_by_method().map(str::to_owned)
 }

@@ -430,7 +430,9 @@ fn a_sweep_on_the_ground_is_of_the_speeds_of_gaits() {
     for method in Method::ALL {
         let steps = chart.points.iter().filter(|point| point.setting.method == method).count();
         // What tells the truth is not judged by it.
-        assert!(if method == GaitSpeeds::METHOD { steps == 0 } else { steps >= 8 }, "{method:?} has {steps} points");
+        // Nor does what cannot step a body on the ground blow up.
+        let left_out = [GaitSpeeds::METHOD, Method::ExactFlow].contains(&method);
+        assert!(if left_out { steps == 0 } else { steps >= 8 }, "{method:?} has {steps} points");
     }
     // Whatever follows the motion comes to its speed.
     for method in [Method::SemiImplicitEuler, Method::RungeKutta2, Method::ImplicitMidpoint] {
