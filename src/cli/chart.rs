@@ -2,14 +2,13 @@
 
 use std::{
     collections::BTreeMap,
-    io::{self, IsTerminal, Write},
+    io::{self, Write},
     path::PathBuf,
 };
 
 use clap::Args;
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-use super::{CliError, Outcome};
+use super::{CliError, Outcome, progress::progress_of};
 use crate::{
     creatures::library::{self, SCENE},
     lab::{
@@ -124,7 +123,7 @@ fn measured(
     gallery: &Gallery,
     key: &str,
 ) -> Result<WorkPrecision, CliError> {
-    let bar = progress(&problem.name);
+    let bar = progress_of(&problem.name, "runs");
     bar.set_message("reference");
     bar.tick();
     let truth = Truth::of(problem, &options.cache)?;
@@ -165,7 +164,7 @@ fn studied(
         }
         return Ok((study, how));
     }
-    let bar = progress(&problem.name);
+    let bar = progress_of(&problem.name, "runs");
     let study = stiffness_study(problem, options, &mut |done, all, what| {
         bar.set_length(all as u64);
         bar.set_position(done as u64);
@@ -175,15 +174,4 @@ fn studied(
     gallery.keep_study(&key, &study)?;
     gallery.write_page()?;
     Ok((study, how))
-}
-
-/// Shown on a terminal only.
-fn progress(name: &str) -> ProgressBar {
-    if !io::stderr().is_terminal() {
-        return ProgressBar::hidden();
-    }
-    let style = ProgressStyle::with_template("{prefix}  {wide_bar} {pos}/{len} runs  {msg}")
-        .unwrap_or_else(|_| ProgressStyle::default_bar());
-    let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr()).with_style(style);
-    bar.with_prefix(name.to_owned())
 }

@@ -1,11 +1,10 @@
 //! `wriggle choose`: the cheapest method and step that are good enough for a scene.
 
-use std::io::{self, IsTerminal, Write};
+use std::io::{self, Write};
 
 use clap::Args;
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-use super::{CliError, Outcome, list::write_table};
+use super::{CliError, Outcome, list::write_table, progress::progress};
 use crate::{
     lab::{Cache, Candidate, Choice, Problem, Search, Truth, Unit, choose as find},
     mechanics::integrators::StickRule,
@@ -30,7 +29,7 @@ pub(super) fn choose(arguments: &ChooseArguments) -> Result<Outcome, CliError> {
         eprintln!("warning: {warning}");
     }
     let problem = Problem::of(&scene)?;
-    let bar = progress();
+    let bar = progress("{wide_bar} {pos}/{len}  {msg}", None);
     bar.set_message("reference");
     let truth = Truth::of(&problem, &Cache::of_platform())?;
     let search = if arguments.cheapest { Search::Cheapest } else { Search::Frontier };
@@ -102,14 +101,4 @@ fn row(candidate: &Candidate, found: &Choice) -> Vec<String> {
         error,
         part,
     ]
-}
-
-/// Shown on a terminal only.
-fn progress() -> ProgressBar {
-    if !io::stderr().is_terminal() {
-        return ProgressBar::hidden();
-    }
-    let style =
-        ProgressStyle::with_template("{wide_bar} {pos}/{len}  {msg}").unwrap_or_else(|_| ProgressStyle::default_bar());
-    ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr()).with_style(style)
 }

@@ -19,6 +19,7 @@ mod headless;
 mod limits;
 mod list;
 mod play;
+mod progress;
 mod report;
 mod run;
 #[cfg(feature = "window")]

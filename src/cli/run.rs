@@ -2,16 +2,16 @@
 
 use std::{
     fs::File,
-    io::{self, BufWriter, IsTerminal, Write},
+    io::{self, BufWriter, Write},
     time::Instant,
 };
 
 use bevy::tasks::ComputeTaskPool;
 use clap::Args;
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::{
     CliError, Headless, Outcome,
+    progress::progress,
     report::{Report, write_record, write_record_head},
     values,
 };
@@ -92,7 +92,7 @@ pub(super) fn run(arguments: &RunArguments) -> Result<Outcome, CliError> {
     let mut record = arguments.record.as_deref().map(Record::create).transpose()?;
     let started = Instant::now();
     let mut report = Report::start(name, method, &run);
-    let bar = progress(steps);
+    let bar = progress("{wide_bar} {percent:>3} %  {human_pos}/{human_len} steps  {eta} left", Some(steps));
     let mut done = 0;
     if let Some(record) = &mut record {
         record.write(|out| write_record_head(out).and_then(|()| write_record(out, &run)))?;
@@ -165,16 +165,6 @@ fn print(arguments: &RunArguments, to_stdout: bool, report: &Report) -> Result<(
     }
     let mut out = io::stdout().lock();
     writeln!(out, "{text}").and_then(|()| out.flush()).map_err(CliError::stdout)
-}
-
-/// Shown on a terminal only.
-fn progress(steps: u64) -> ProgressBar {
-    if !io::stderr().is_terminal() {
-        return ProgressBar::hidden();
-    }
-    let style = ProgressStyle::with_template("{wide_bar} {percent:>3} %  {human_pos}/{human_len} steps  {eta} left")
-        .unwrap_or_else(|_| ProgressStyle::default_bar());
-    ProgressBar::with_draw_target(Some(steps), ProgressDrawTarget::stderr()).with_style(style)
 }
 
 /// Where a recording goes.

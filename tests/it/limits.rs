@@ -3,8 +3,14 @@
 use bevy::math::DVec3;
 use wriggle::{
     body::{MassDamping, Particle, ParticleId, Particles, Spring, Springs},
-    lab::limits::{growth, limits, linearised_limit, predicted_limit, scene_limit},
-    mechanics::{BodyParts, integrators::Method},
+    lab::{
+        Problem,
+        limits::{growth, limits, linearised_limit, predicted_limit, scene_limit},
+    },
+    mechanics::{
+        BodyParts,
+        integrators::{Method, StickRule},
+    },
 };
 
 use crate::support::Worm;
@@ -311,7 +317,7 @@ fn without_friction_a_worm_explodes_where_its_step_begins_to_grow() {
 
 #[test]
 fn the_limits_of_the_garden_agree_or_have_a_reason() {
-    let rows = limits(&wriggle::scenes::load("garden").unwrap()).unwrap();
+    let rows = limits(&wriggle::scenes::load("garden").unwrap(), &|_, _| {}).unwrap();
     assert_eq!(rows.len(), Method::ALL.len());
     for row in rows {
         let (Some(linearised), Some(explodes)) = (row.linearised, row.explodes) else { panic!("{row:?}") };
@@ -320,5 +326,66 @@ fn the_limits_of_the_garden_agree_or_have_a_reason() {
         assert!(row.bound <= linearised * 1.0002 && row.bound >= 0.5 * linearised, "{row:?}");
         let near = explodes == linearised || (explodes / linearised - 1.0).abs() <= 0.06;
         assert_eq!(row.reason.is_none(), near, "{row:?}");
+    }
+}
+
+/// That a limit is predicted and found within 2 %, with a bound between half of it and all.
+fn assert_known(name: &str, body: &BodyParts<'_>) {
+    let (predicted, linearised) = (predicted_limit(body).unwrap(), linearised_limit(body).unwrap());
+    let (bound, method) = (body.stability_limit(0.0), body.method);
+    let near = (linearised / predicted - 1.0).abs() <= 0.02;
+    assert!(near, "{name}, {method:?}: predicted {predicted}, found {linearised}");
+    // To the precision with which limits of large bodies are found.
+    let is_bound = bound <= 1.005 * linearised && bound >= 0.5 * linearised;
+    assert!(is_bound, "{name}, {method:?}: bound {bound}, found {linearised}");
+}
+
+#[test]
+fn limits_of_a_worm_whose_rest_lengths_follow_its_pose_are_predicted() {
+    let problem = Problem::of(&wriggle::scenes::load("cliff").unwrap()).unwrap();
+    for method in [Method::ExplicitEuler, Method::Leapfrog] {
+        assert_known("worm", &problem.bodies[0].parts(method, StickRule::InStages));
+    }
+}
+
+#[test]
+fn limits_of_a_block_too_large_for_its_eigenvalues_are_predicted() {
+    // 648 coordinates.
+    let (particles, springs) = body_of(block(6).0, &block(6).1, |_| (1.0, 0.2));
+    assert_known("block", &BodyParts::new(&particles, &springs, Method::SemiImplicitEuler));
+    // Where damping does not go with stiffness its stiffest direction does not decide.
+    let (particles, springs) = body_of(block(6).0, &block(6).1, |i| (1.0, 0.1 * (i % 3) as f64));
+    assert_eq!(predicted_limit(&BodyParts::new(&particles, &springs, Method::RungeKutta4)), None);
+}
+
+#[test]
+fn what_each_step_takes_counts_as_damping() {
+    let (particles, springs) = body_in(&block(3), Damped::InProportion(0.0), 1.0);
+    for method in Method::ALL {
+        let body = BodyParts {
+            mass_damping: Some(MassDamping::per_step(0.01).unwrap()),
+            ..BodyParts::new(&particles, &springs, method)
+        };
+        let Some(predicted) = predicted_limit(&body).filter(|limit| limit.is_finite()) else { continue };
+        let (bound, linearised) = (body.stability_limit(0.0), linearised_limit(&body).unwrap());
+        assert!((linearised / predicted - 1.0).abs() <= 0.02, "{method:?}: {predicted} and {linearised}");
+        assert!(bound <= predicted && bound >= 0.5 * predicted, "{method:?}: bound {bound}, predicted {predicted}");
+    }
+}
+
+#[test]
+#[ignore = "takes minutes: cargo test --release --no-default-features --test it limits_of_all_shipped -- --ignored --nocapture"]
+fn limits_of_all_shipped_scenes_have_what_is_expected_or_a_reason() {
+    for name in wriggle::creatures::library::list(wriggle::creatures::library::SCENE).into_keys() {
+        for row in limits(&wriggle::scenes::load(&name).unwrap(), &|_, _| {}).unwrap() {
+            println!("{row:?}");
+            let (Some(linearised), Some(explodes)) = (row.linearised, row.explodes) else { continue };
+            if row.method != "SixMatrix" && row.predicted.is_some_and(f64::is_finite) {
+                assert!(row.predicted.is_some_and(|predicted| agree(linearised, predicted, 1.0)), "{row:?}");
+            }
+            assert!(row.bound.is_infinite() || row.bound <= 1.005 * linearised, "{row:?}");
+            let near = explodes == linearised || (explodes / linearised - 1.0).abs() <= 0.06;
+            assert!(near || row.reason.is_some(), "{row:?}");
+        }
     }
 }

@@ -1,12 +1,29 @@
 //! A body near its pose: x'' = −Kx − Cx', in coordinates weighted by the square roots of the masses.
+//!
+//! Of a large body the stiffest direction alone is found, by a Krylov method on the sparse K. Where damping goes with stiffness that direction decides
+//! the limits of all methods with a formula: they fall with κ where γ goes with it.
 
 use bevy::math::DVec3;
-use faer::{Mat, Side};
+use faer::{
+    Col, Mat, Par, Side,
+    dyn_stack::{MemBuffer, MemStack},
+    matrix_free::eigen::{partial_self_adjoint_eigen, partial_self_adjoint_eigen_scratch},
+    sparse::{SparseColMat, Triplet},
+};
 
-use crate::{body::MassDamping, mechanics::BodyParts};
+use crate::{
+    body::{MassDamping, Particle, ParticleId, Particles, Strand},
+    mechanics::{BodyParts, Damping, rest_lengths, stability_bound},
+};
 
 /// A direction in which nothing resists counts as none below this part of the stiffest.
 const NOTHING: f64 = 1e-10;
+/// The eigenvalues of bodies of more coordinates take minutes.
+const MOST_COORDINATES: usize = 400;
+/// The stiffest direction is found to this part of its stiffness.
+const PRECISION: f64 = 1e-7;
+/// By how much a particle is moved, in the shortest rest length, to see how rest lengths follow it.
+const MOVE: f64 = 1e-5;
 
 /// One coordinate that can change.
 #[derive(Clone, Copy, Debug)]
@@ -22,11 +39,15 @@ pub(super) struct Coordinate {
 pub(super) struct Linear {
     /// The coordinates that can change.
     pub(super) coordinates: Vec<Coordinate>,
-    /// Columns: the directions that springs resist or damp, orthonormal.
+    /// Columns: the directions that springs resist or damp, orthonormal; of a large body the stiffest alone.
     pub(super) resisted: Mat<f64>,
-    /// Columns: the others.
+    /// K in all directions, without what rest lengths do that follow the pose.
+    pub(super) springs: SparseColMat<usize, f64>,
+    /// The direction of length 1 that this resists most.
+    pub(super) stiffest: Vec<f64>,
+    /// Columns: the others; of a large body one of them, if there is any for sure.
     pub(super) free: Mat<f64>,
-    /// K in the resisted directions.
+    /// K in the resisted directions. Not symmetric where rest lengths follow the pose, as those of a strand that bulges.
     pub(super) stiffness: Mat<f64>,
     /// C of the springs in the resisted directions.
     pub(super) damping: Mat<f64>,
@@ -34,6 +55,10 @@ pub(super) struct Linear {
     pub(super) mass_damping: Option<MassDamping>,
     /// The fastest of all rates, from above: no root of the body is larger. 0 where nothing moves anything.
     pub(super) rate: f64,
+    /// Whether K is symmetric.
+    pub(super) symmetric: bool,
+    /// Whether these directions decide how large a step may be: not those of a large body that is damped otherwise than in proportion to its stiffness.
+    pub(super) decisive: bool,
 }
 
 /// What is left of a body without friction, contact and gravity and with its muscles at rest.
@@ -46,7 +71,11 @@ impl Linear {
     pub(super) fn of(body: &BodyParts<'_>) -> Option<Self> {
         let dimensions = if bare(body).on_axis() { 1 } else { 3 };
         let coordinates = coordinates(body, dimensions);
-        let (stiffness, damping) = matrices(body, dimensions, &coordinates);
+        if coordinates.len() > MOST_COORDINATES {
+            return Self::stiffest(body, dimensions, coordinates);
+        }
+        let (springs, damping) = matrices(body, dimensions, &coordinates)?;
+        let (stiffness, damping) = (springs.to_dense(), damping.to_dense());
         let (hardest, most) = (largest(&stiffness), largest(&damping));
         let either = Mat::from_fn(coordinates.len(), coordinates.len(), |i, j| {
             share(stiffness[(i, j)], hardest) + share(damping[(i, j)], most)
@@ -60,14 +89,74 @@ impl Linear {
         let resisted = columns(&|value| value > NOTHING);
         let free = columns(&|value| value <= NOTHING);
         let within = |matrix: &Mat<f64>| resisted.transpose() * matrix * &resisted;
-        let (stiffness, damping) = (within(&stiffness), within(&damping));
+        let following = following(body, dimensions, &coordinates);
         let norm = |matrix: &Mat<f64>| spectrum(matrix).map(|values| values.into_iter().fold(0.0, f64::max));
-        let by_mass = body.mass_damping.map_or(0.0, |damping| match damping {
-            MassDamping::Rate(rate) => rate,
-            MassDamping::PerStep(_) => 0.0,
-        });
-        let rate = norm(&stiffness)?.sqrt().max(norm(&damping)? + by_mass);
-        Some(Self { coordinates, resisted, free, stiffness, damping, mass_damping: body.mass_damping, rate })
+        let (stiffness, damping) = (within(&stiffness), within(&damping));
+        let stiffest = match stiffness.self_adjoint_eigen(Side::Lower).ok()?.U() {
+            directions if directions.ncols() > 0 => &resisted * directions.col(directions.ncols() - 1),
+            _ => Col::zeros(coordinates.len()),
+        };
+        let followed = following.as_ref().map_or(0.0, Mat::norm_l2);
+        let rate = (norm(&stiffness)? + followed).sqrt().max(norm(&damping)? + by_mass(body));
+        let stiffness =
+            following.as_ref().map_or_else(|| stiffness.clone(), |following| &stiffness + within(following));
+        let (symmetric, mass_damping) = (following.is_none(), body.mass_damping);
+        Some(Self {
+            coordinates,
+            resisted,
+            springs,
+            stiffest: stiffest.iter().copied().collect(),
+            free,
+            stiffness,
+            damping,
+            mass_damping,
+            rate,
+            symmetric,
+            decisive: true,
+        })
+    }
+
+    /// The stiffest direction of a large body; nothing for one whose rest lengths follow its pose.
+    fn stiffest(body: &BodyParts<'_>, dimensions: usize, coordinates: Vec<Coordinate>) -> Option<Self> {
+        if body.strand.is_some_and(Strand::bulge) {
+            return None;
+        }
+        let count = coordinates.len();
+        let (springs, damping) = matrices(body, dimensions, &coordinates)?;
+        let direction = stiffest_direction(&springs)?;
+        let along = |matrix: &SparseColMat<usize, f64>| direction.transpose() * (matrix * &direction);
+        let (stiffness, damping) = (along(&springs), along(&damping));
+        let none_is_pinned = !body.particles.pinned().contains(&true);
+        let drifting = usize::from(none_is_pinned);
+        Some(Self {
+            resisted: Mat::from_fn(count, 1, |i, _| direction[i]),
+            springs,
+            stiffest: direction.iter().copied().collect(),
+            free: Mat::from_fn(count, drifting, |i, _| {
+                if coordinates[i].axis == 0 { 1.0 / coordinates[i].weight } else { 0.0 }
+            }),
+            stiffness: Mat::from_fn(1, 1, |_, _| stiffness),
+            damping: Mat::from_fn(1, 1, |_, _| damping),
+            mass_damping: body.mass_damping,
+            rate: stiffness.sqrt().max(damping + by_mass(body)),
+            symmetric: true,
+            decisive: stability_bound(body, 0.0).damping == Damping::Proportional,
+            coordinates,
+        })
+    }
+
+    /// A time in which nothing much happens but a step of `dt`: speeds in it compare with positions.
+    pub(super) fn time(&self, dt: f64) -> f64 {
+        dt.max(1.0 / self.rate)
+    }
+
+    /// Twice the energy of a disturbance, v·v + x·Kx: where each coordinate is, and then how fast, in [`Self::time`].
+    pub(super) fn energy(&self, disturbance: &[f64], dt: f64) -> f64 {
+        let (positions, velocities) = disturbance.split_at(self.coordinates.len());
+        let positions = Col::from_iter(positions.iter().copied());
+        let elastic = positions.transpose() * (&self.springs * &positions);
+        let kinetic: f64 = velocities.iter().map(|v| v * v).sum();
+        elastic + kinetic / self.time(dt).powi(2)
     }
 
     /// The rate c of damping in proportion to mass with steps of `dt`.
@@ -99,14 +188,70 @@ fn coordinates(body: &BodyParts<'_>, dimensions: usize) -> Vec<Coordinate> {
         .collect()
 }
 
-/// M^(−½)KM^(−½) and M^(−½)CM^(−½). A spring of length l along n resists with k along n, and across with k(1 − L/l).
-fn matrices(body: &BodyParts<'_>, dimensions: usize, coordinates: &[Coordinate]) -> (Mat<f64>, Mat<f64>) {
+/// The rate of damping in proportion to mass, where that does not depend on the step.
+fn by_mass(body: &BodyParts<'_>) -> f64 {
+    match body.mass_damping {
+        Some(MassDamping::Rate(rate)) => rate,
+        _ => 0.0,
+    }
+}
+
+/// The direction of length 1 that a symmetric matrix stretches most.
+fn stiffest_direction(matrix: &SparseColMat<usize, f64>) -> Option<Col<f64>> {
+    let count = matrix.ncols();
+    // Of no regularity, so that it has a part of the stiffest direction.
+    let start = Col::from_fn(count, |i| ((i * 37 + i / 3 * 53) % 101) as f64 / 50.0 - 1.01);
+    let start = &start / start.norm_l2();
+    let (mut directions, mut values) = (Mat::zeros(count, 1), [0.0]);
+    let settings = Default::default();
+    let mut memory = MemBuffer::try_new(partial_self_adjoint_eigen_scratch(matrix, 1, Par::Seq, settings)).ok()?;
+    let stack = MemStack::new(&mut memory);
+    let found = partial_self_adjoint_eigen(
+        directions.as_mut(),
+        &mut values,
+        matrix,
+        start.as_ref(),
+        PRECISION,
+        Par::Seq,
+        stack,
+        settings,
+    );
+    (found.n_converged_eigen == 1).then(|| directions.col(0).to_owned())
+}
+
+/// M^(−½)KM^(−½) and M^(−½)CM^(−½), without what rest lengths do that follow the pose.
+fn matrices(
+    body: &BodyParts<'_>,
+    dimensions: usize,
+    coordinates: &[Coordinate],
+) -> Option<(SparseColMat<usize, f64>, SparseColMat<usize, f64>)> {
+    let (mut stiffness, mut damping) = (Vec::new(), Vec::new());
+    entries(body, dimensions, coordinates, |row, col, k, c| {
+        stiffness.push(Triplet { row, col, val: k });
+        damping.push(Triplet { row, col, val: c });
+    });
     let count = coordinates.len();
+    let matrix = |entries: &[_]| SparseColMat::try_new_from_triplets(count, count, entries).ok();
+    Some((matrix(&stiffness)?, matrix(&damping)?))
+}
+
+/// Which coordinate each axis of each particle is.
+fn index(body: &BodyParts<'_>, coordinates: &[Coordinate]) -> Vec<Option<usize>> {
     let mut index = vec![None; 3 * body.particles.len()];
     for (i, coordinate) in coordinates.iter().enumerate() {
         index[3 * coordinate.particle + coordinate.axis] = Some(i);
     }
-    let (mut stiffness, mut damping) = (Mat::zeros(count, count), Mat::zeros(count, count));
+    index
+}
+
+/// Each spring's parts of the two matrices: row, column, stiffness, damping. A spring of length l along n resists with k along n, and across with k(1 − L/l).
+fn entries(
+    body: &BodyParts<'_>,
+    dimensions: usize,
+    coordinates: &[Coordinate],
+    mut add: impl FnMut(usize, usize, f64, f64),
+) {
+    let index = index(body, coordinates);
     for spring in body.springs.iter() {
         let [a, b] = spring.ends.map(|end| body.particles.position(end).unwrap_or(DVec3::ZERO));
         let length = a.distance(b);
@@ -125,12 +270,53 @@ fn matrices(body: &BodyParts<'_>, dimensions: usize, coordinates: &[Coordinate])
                         let same = if i == j { across } else { 0.0 };
                         let weight = sign * coordinates[row].weight * coordinates[column].weight;
                         let axial = along[i] * along[j];
-                        stiffness[(row, column)] += weight * ((spring.stiffness - across) * axial + same);
-                        damping[(row, column)] += weight * spring.damping * axial;
+                        let stiffness = weight * ((spring.stiffness - across) * axial + same);
+                        add(row, column, stiffness, weight * spring.damping * axial);
                     }
                 }
             }
         }
     }
-    (stiffness, damping)
+}
+
+/// What rest lengths add to M^(−½)KM^(−½) that follow the pose, as those of a strand that bulges: a spring then resists by
+/// k(dl − dL), and what drives L need not be at its ends.
+fn following(body: &BodyParts<'_>, dimensions: usize, coordinates: &[Coordinate]) -> Option<Mat<f64>> {
+    body.strand.filter(|strand| strand.bulge())?;
+    let (index, bare) = (index(body, coordinates), bare(body));
+    let shortest = body.springs.iter().map(|spring| spring.rest_length).fold(f64::INFINITY, f64::min);
+    let by = MOVE * shortest;
+    let mut matrix = Mat::zeros(coordinates.len(), coordinates.len());
+    for (column, coordinate) in coordinates.iter().enumerate() {
+        let [ahead, behind] = [by, -by].map(|by| {
+            let particles = moved(body.particles, *coordinate, by);
+            rest_lengths(&BodyParts { particles: &particles, ..bare }, 0.0)
+        });
+        for (spring, (ahead, behind)) in body.springs.iter().zip(ahead.into_iter().zip(behind)) {
+            let pull = spring.stiffness * (ahead - behind) / (2.0 * by) * coordinate.weight;
+            let [a, b] = spring.ends.map(|end| body.particles.position(end).unwrap_or(DVec3::ZERO));
+            let along = (b - a).normalize_or_zero().to_array();
+            for (end, sign) in spring.ends.into_iter().zip([1.0, -1.0]) {
+                for (axis, along) in along.into_iter().enumerate().take(dimensions) {
+                    if let Some(row) = index[3 * end.index() + axis] {
+                        matrix[(row, column)] += sign * coordinates[row].weight * along * pull;
+                    }
+                }
+            }
+        }
+    }
+    Some(matrix)
+}
+
+/// The particles with one of them moved along an axis.
+fn moved(particles: &Particles, at: Coordinate, by: f64) -> Particles {
+    let mut particles = particles.clone();
+    let id = ParticleId(at.particle as u32);
+    if let Some(particle) = particles.get(id) {
+        let mut position = particle.position;
+        position[at.axis] += by;
+        // A place near that of a particle is as good as that.
+        let _ = particles.set(id, Particle { position, ..particle });
+    }
+    particles
 }

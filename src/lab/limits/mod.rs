@@ -5,13 +5,18 @@
 //! method's own step near the body's pose, with friction and contact off; and at the **scene**'s limit the body explodes with its muscles running.
 
 mod alike;
+mod iterated;
 mod linear;
+mod linearised_step;
 mod predicted;
 mod scene;
 mod search;
 mod six;
 mod step_matrix;
 
+use core::sync::atomic::{AtomicUsize, Ordering};
+
+use bevy::tasks::TaskPool;
 use serde::{Serialize, Serializer};
 
 use crate::{creatures::FileError, lab::ProblemBody, mechanics::integrators::Method, scenes::LoadedScene};
@@ -24,9 +29,6 @@ pub use step_matrix::{growth, linearised_limit};
 /// A scene's limit further from the linearised one than this part of it has a reason.
 const NEAR: f64 = 0.06;
 
-/// The eigenvalues of larger bodies take minutes; they have their bound alone.
-const MOST_LINEARISED: usize = 100;
-
 /// The limits of the step of one body by one method. An infinite limit is none: no step makes the method unstable.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Limits {
@@ -36,70 +38,72 @@ pub struct Limits {
     pub body: String,
     /// The name of the method; `SixMatrix` for bodies of the six-matrix particle system.
     pub method: &'static str,
-    /// From the eigenvalues of the linearised body; nothing where no formula is known.
+    /// From the eigenvalues of the linearised body; nothing where no formula is known, and for large bodies that are damped otherwise than in
+    /// proportion to their stiffness.
     #[serde(serialize_with = "limit")]
     pub predicted: Option<f64>,
     /// The cheap bound, which is never above the true limit.
     #[serde(serialize_with = "finite")]
     pub bound: f64,
-    /// By bisection on the growth of the linearised step; nothing where the method cannot step the body, and for large bodies.
+    /// By bisection on the growth of the linearised step; nothing where the method cannot step the body.
     #[serde(serialize_with = "limit")]
     pub linearised: Option<f64>,
-    /// The smallest step at which the scene's body explodes; nothing where the method cannot step it.
+    /// The smallest step at which the scene's body explodes or the method refuses it; nothing where the method cannot step the body at all.
     #[serde(serialize_with = "limit")]
     pub explodes: Option<f64>,
     /// Why the body explodes at another step than the linearised one, where it does.
     pub reason: Option<&'static str>,
 }
 
-/// The limits of every body of a scene by every method. Bodies that differ only in where they are come once.
+/// The limits of every body of a scene by every method. Bodies that differ only in where they are come once. Each body and method is looked at on a thread
+/// of its own; `progress` hears how many of how many are done.
 ///
 /// # Errors
 /// If a body cannot be built, which loading the scene has found out before.
-pub fn limits(scene: &LoadedScene) -> Result<Vec<Limits>, FileError> {
-    let mut rows = Vec::new();
-    for body in alike::distinct(ProblemBody::all(scene)?.0) {
-        for method in Method::ALL {
-            let parts = body.parts(method, scene.file.stick);
-            if parts.particles.len() > MOST_LINEARISED {
-                let bound = parts.stability_limit(0.0);
-                rows.push(Limits {
-                    scene: scene.source.stem(),
-                    body: body.name.clone(),
-                    method: method.name(),
-                    predicted: None,
-                    bound,
-                    linearised: None,
-                    explodes: None,
-                    reason: Some("too large to be linearised"),
-                });
-                continue;
-            }
-            let linearised = linearised_limit(&parts);
-            let explodes = linearised.and_then(|linearised| scene_limit(&parts, linearised));
-            let reason = linearised
-                .zip(explodes)
-                .filter(|&(linearised, explodes)| is_apart(linearised, explodes))
-                .map(|(linearised, explodes)| scene::reason(&parts, linearised, explodes));
-            rows.push(Limits {
-                scene: scene.source.stem(),
-                body: body.name.clone(),
-                method: method.name(),
-                predicted: predicted_limit(&parts),
-                bound: parts.stability_limit(0.0),
-                linearised,
-                explodes,
-                reason,
+pub fn limits(scene: &LoadedScene, progress: &(dyn Fn(usize, usize) + Sync)) -> Result<Vec<Limits>, FileError> {
+    let bodies = alike::distinct(ProblemBody::all(scene)?.0);
+    let all = bodies.len() * Method::ALL.len();
+    let done = AtomicUsize::new(0);
+    progress(0, all);
+    let mut rows = TaskPool::new().scope(|scope| {
+        for (body, method) in bodies.iter().flat_map(|body| Method::ALL.map(|method| (body, method))) {
+            let done = &done;
+            scope.spawn(async move {
+                let row = row(scene, body, method);
+                progress(done.fetch_add(1, Ordering::Relaxed) + 1, all);
+                row
             });
         }
-    }
+    });
     rows.extend(six::rows(scene)?);
     Ok(rows)
 }
 
+fn row(scene: &LoadedScene, body: &ProblemBody, method: Method) -> Limits {
+    let parts = body.parts(method, scene.file.stick);
+    let predicted = predicted_limit(&parts);
+    let linearised = linearised_limit(&parts);
+    let explodes = linearised.and_then(|linearised| scene_limit(&parts, linearised));
+    let reason = linearised
+        .zip(explodes)
+        .filter(|&(linearised, explodes)| is_apart(linearised, explodes))
+        .map(|(linearised, explodes)| scene::reason(&parts, linearised, explodes));
+    Limits {
+        scene: scene.source.stem(),
+        body: body.name.clone(),
+        method: method.name(),
+        predicted,
+        bound: parts.stability_limit(0.0),
+        linearised,
+        explodes,
+        reason,
+    }
+}
+
 /// Whether two limits differ by more than is expected of them.
 fn is_apart(a: f64, b: f64) -> bool {
-    a != b && (b - a).abs().partial_cmp(&(NEAR * a)).is_none_or(core::cmp::Ordering::is_gt)
+    let is_near = (b - a).abs() <= NEAR * a && a.is_finite();
+    a != b && !is_near
 }
 
 /// JSON has no infinity.

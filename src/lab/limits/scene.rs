@@ -3,16 +3,18 @@
 use bevy::math::DVec3;
 
 use crate::{
-    body::{Muscles, Particles},
+    body::{Muscles, Particles, TravelingWaves},
     mechanics::{Advance, BodyParts, Model, State, Timeline, elastic_energy, kinetic_energy, momentum},
 };
 
 use super::{is_apart, linear::Linear, search::bisect};
 
-/// For how many cycles of its slowest muscle a body is watched.
+/// For how many cycles of its slowest muscle or wave a body is watched.
 const CYCLES: f64 = 50.0;
-/// How many steps it is watched at least, and at most.
-const STEPS: [f64; 2] = [200.0, 1e6];
+/// How many steps it is watched at least.
+const LEAST_STEPS: f64 = 2000.0;
+/// How many steps a body of one particle is watched at most; others so many times fewer.
+const MOST_STEPS: f64 = 3e5;
 /// The search looks at steps that differ by this factor.
 const STRIDE: f64 = 1.05;
 /// The limit is found to this part of itself.
@@ -29,30 +31,31 @@ struct Outcome {
     flipped: bool,
 }
 
-/// The smallest step at which the body explodes within fifty cycles of its muscles, or has more energy than all of its springs would hold
-/// squeezed to no length: searched from half of `linearised` to four times that, or to a whole cycle where that is infinite. Infinite where it does
-/// not explode at any of these; nothing where the method cannot step it.
+/// The smallest step at which the body explodes within fifty cycles of its muscles and waves (a large body within fewer), has more energy than all of
+/// its springs would hold squeezed to no length, or is refused by its method: searched from half of `linearised` to four times that, or to a whole
+/// cycle where that is infinite. Infinite where nothing of that happens at any of these; nothing for a body whose rates cannot be found.
 pub fn scene_limit(body: &BodyParts<'_>, linearised: f64) -> Option<f64> {
     let rate = Linear::of(body)?.rate;
-    let period = period(body).unwrap_or(if rate > 0.0 { 1.0 / rate } else { 1.0 });
+    // What nothing drives is tried up to steps in which its own oscillations are long over.
+    let period = period(body).unwrap_or(if rate > 0.0 { 1e3 / rate } else { 1.0 });
     let (mut dt, last, stride) = match linearised {
         0.0 => (1e-3 / rate, period, STRIDE * STRIDE),
         limit if limit.is_finite() => (0.5 * limit, 4.0 * limit, STRIDE),
-        _ => (1e-3 * period, period, 1.4),
+        _ => (f64::min(1.0 / rate, period), period, 2.0),
     };
-    let exploded = |dt| {
+    let fails = |dt| {
         let outcome = run(body, dt);
-        if outcome.refused { None } else { Some(outcome.exploded) }
+        outcome.exploded || outcome.refused
     };
     let mut below = dt;
-    while exploded(below)? {
+    while fails(below) {
         below *= 0.7;
         if below < 1e-3 * dt {
             return Some(0.0);
         }
     }
     if below == dt {
-        while !exploded(dt * stride)? {
+        while !fails(dt * stride) {
             dt *= stride;
             if dt > last {
                 return Some(f64::INFINITY);
@@ -61,18 +64,26 @@ pub fn scene_limit(body: &BodyParts<'_>, linearised: f64) -> Option<f64> {
         below = dt;
         dt *= stride;
     }
-    Some(bisect(below, dt, PRECISION, |dt| exploded(dt) == Some(false)))
+    Some(bisect(below, dt, PRECISION, |dt| !fails(dt)))
 }
 
 /// Why a body explodes at `explodes` where its linearised step grows from `linearised` on.
 pub(super) fn reason(body: &BodyParts<'_>, linearised: f64, explodes: f64) -> &'static str {
     let slippery = BodyParts { friction: None, coulomb: None, ground: None, gravity: None, ..*body };
+    if run(body, explodes * (1.0 + 2.0 * PRECISION)).refused {
+        return "its equations have no solution there that Newton's iteration finds";
+    }
     if linearised == 0.0 {
-        return "what is not damped grows too slowly to explode in fifty cycles";
+        return "what is not damped grows too slowly to explode while it is watched";
     }
     if explodes < linearised {
         return match scene_limit(&slippery, linearised) {
-            Some(without) if !is_apart(linearised, without) => "friction lets masses go with a jerk",
+            Some(without) if !is_apart(linearised, without) => {
+                match body.friction.is_some() || body.coulomb.is_some() {
+                    true => "friction lets masses go with a jerk",
+                    false => "it falls and strikes the ground, which is no small disturbance",
+                }
+            }
             _ => "muscles drive it into poses and speeds that a small disturbance does not reach",
         };
     }
@@ -83,12 +94,13 @@ pub(super) fn reason(body: &BodyParts<'_>, linearised: f64, explodes: f64) -> &'
     } else if with.flipped || without.flipped {
         "a spring through zero length flips: bounded rattling"
     } else {
-        "the disturbance grows too slowly to explode in fifty cycles"
+        "the disturbance grows too slowly to explode while it is watched"
     }
 }
 
 fn period(body: &BodyParts<'_>) -> Option<f64> {
-    body.muscles.into_iter().flat_map(Muscles::iter).map(|muscle| muscle.period).reduce(f64::max)
+    let muscles = body.muscles.into_iter().flat_map(Muscles::iter).map(|muscle| muscle.period);
+    muscles.chain(body.waves.and_then(TravelingWaves::longest_period)).reduce(f64::max)
 }
 
 fn run(body: &BodyParts<'_>, dt: f64) -> Outcome {
@@ -96,8 +108,8 @@ fn run(body: &BodyParts<'_>, dt: f64) -> Outcome {
 }
 
 fn run_in<const D: usize>(body: &BodyParts<'_>, dt: f64) -> Outcome {
-    let [least, most] = STEPS;
-    let steps = (CYCLES * period(body).unwrap_or(0.0) / dt).clamp(least, most) as u64;
+    let most = (MOST_STEPS / body.particles.len() as f64).max(LEAST_STEPS);
+    let steps = (CYCLES * period(body).unwrap_or(0.0) / dt).clamp(LEAST_STEPS, most) as u64;
     let mut model = Model::<f64, D>::new(body, [], dt);
     let mut state = State::<f64, D>::new(body.particles.len());
     state.set_lane(0, body.particles);
@@ -139,7 +151,9 @@ fn energy(body: &BodyParts<'_>, time: f64) -> f64 {
 
 /// What all springs hold when they are squeezed to no length with their muscles at their longest; infinite where no spring holds anything.
 fn squeezed(body: &BodyParts<'_>) -> f64 {
-    let amplitude = body.muscles.into_iter().flat_map(Muscles::iter).map(|muscle| muscle.amplitude).fold(0.0, f64::max);
+    let muscles = body.muscles.into_iter().flat_map(Muscles::iter).map(|muscle| muscle.amplitude).fold(0.0, f64::max);
+    let waves: f64 = body.waves.into_iter().flat_map(TravelingWaves::iter).map(|wave| wave.amplitude).sum();
+    let amplitude = muscles.max(waves);
     let energy = |length: f64, stiffness: f64| 0.5 * stiffness * length * length;
     let all: f64 =
         body.springs.iter().map(|spring| energy((1.0 + amplitude) * spring.rest_length, spring.stiffness)).sum();

@@ -3,35 +3,52 @@
 
 use faer::Mat;
 
-use crate::mechanics::{Advance, BodyParts, Model, State, Timeline};
+use crate::mechanics::BodyParts;
 
 use super::{
+    iterated,
     linear::{Linear, bare},
-    search::first_unstable,
+    linearised_step::LinearisedStep,
+    search::{MOST, first_unstable},
 };
 
-/// How large disturbances are, in the shortest rest length: on an axis, where springs are linear, and in space.
-const DISTURBANCE: [f64; 2] = [1e-3, 1e-5];
 /// The search begins at this part of the time of the fastest rate.
 const FROM: f64 = 1e-3;
 /// Limits are found to this part of themselves.
 const PRECISION: f64 = 1e-4;
+/// By iteration the search begins here, and ends where the conjugate gradients of implicit methods leave more than a disturbance.
+const ITERATED: [f64; 2] = [0.25, 100.0];
+/// To this part of themselves limits are found by iteration.
+const ITERATED_PRECISION: f64 = 5e-3;
+/// The eigenvalues of the steps of bodies of more coordinates take longer than iterations.
+const MOST_COORDINATES: usize = 60;
 /// What rounding and the square of a disturbance may add to a growth of 1.
 const ROUNDING: f64 = 1e-8;
 
-/// The smallest step at which a small disturbance of the body's present pose grows, to a part in ten thousand: without friction, contact and gravity,
-/// with its muscles at rest. Infinite where none grows at any step; nothing where the method cannot step the body.
+/// The smallest step at which a small disturbance of the body's present pose grows: without friction, contact and gravity, with its muscles at rest.
+/// To a part in ten thousand by the eigenvalues of the step's matrix, for large bodies to half a percent by [iteration](super::iterated). Infinite
+/// where none grows at any step; nothing where the method cannot step the body.
 pub fn linearised_limit(body: &BodyParts<'_>) -> Option<f64> {
     let linear = Linear::of(body)?;
+    let is_large = linear.coordinates.len() > MOST_COORDINATES;
+    let calm = |dt| match is_large {
+        true if bare(body).on_axis() => is_calm::<1>(body, &linear, dt),
+        true => is_calm::<3>(body, &linear, dt),
+        false => growth_of(body, &linear, dt).map(|growth| growth <= 1.0 + ROUNDING),
+    };
+    let (range, precision) = if is_large { (ITERATED, ITERATED_PRECISION) } else { ([FROM, MOST], PRECISION) };
     let mut refused = false;
-    let limit = first_unstable(linear.rate, FROM / linear.rate, PRECISION, |dt| match growth_of(body, &linear, dt) {
-        Some(growth) => growth <= 1.0 + ROUNDING,
-        None => {
-            refused = true;
-            false
-        }
+    let limit = first_unstable(linear.rate, range, precision, |dt| {
+        let calm = calm(dt);
+        refused |= calm.is_none();
+        calm == Some(true)
     });
     (!refused).then_some(limit)
+}
+
+fn is_calm<const D: usize>(body: &BodyParts<'_>, linear: &Linear, dt: f64) -> Option<bool> {
+    let mut step = LinearisedStep::<D>::new(body, linear, dt);
+    iterated::is_calm(linear, dt, |disturbance| step.take(disturbance))
 }
 
 /// By how much a step of `dt` multiplies the disturbance that grows most, in the long run: the spectral radius of the linearised step. 1 where the
@@ -40,9 +57,9 @@ pub fn growth(body: &BodyParts<'_>, dt: f64) -> Option<f64> {
     growth_of(body, &Linear::of(body)?, dt)
 }
 
-fn growth_of(body: &BodyParts<'_>, linear: &Linear, dt: f64) -> Option<f64> {
-    let body = bare(body);
-    let matrix = if body.on_axis() { matrix::<1>(&body, linear, dt)? } else { matrix::<3>(&body, linear, dt)? };
+pub(super) fn growth_of(body: &BodyParts<'_>, linear: &Linear, dt: f64) -> Option<f64> {
+    let on_axis = bare(body).on_axis();
+    let matrix = if on_axis { matrix::<1>(body, linear, dt)? } else { matrix::<3>(body, linear, dt)? };
     if matrix.col_iter().any(|column| column.iter().any(|value| !value.is_finite())) {
         return Some(f64::INFINITY);
     }
@@ -53,53 +70,26 @@ fn growth_of(body: &BodyParts<'_>, linear: &Linear, dt: f64) -> Option<f64> {
 /// The step as a matrix on the resisted directions' positions and velocities. What moves as a whole is left out: it drifts, which is no growth.
 /// Where its mass damps it, one such velocity stands for all.
 fn matrix<const D: usize>(body: &BodyParts<'_>, linear: &Linear, dt: f64) -> Option<Mat<f64>> {
-    let resisted = linear.resisted.ncols();
+    let (coordinates, resisted) = (linear.coordinates.len(), linear.resisted.ncols());
     let drifting = usize::from(linear.mass_damping.is_some() && linear.free.ncols() > 0);
     let count = 2 * resisted + drifting;
-    let rest = body.springs.iter().map(|spring| spring.rest_length).fold(f64::INFINITY, f64::min);
-    let size = if rest.is_finite() { rest } else { 1.0 } * DISTURBANCE[usize::from(D == 3)];
-    // Positions in lengths, velocities in lengths a time in which nothing much happens.
-    let time = dt.max(1.0 / linear.rate);
     let direction = |column: usize, i: usize| match column % resisted.max(1) {
         _ if column >= 2 * resisted => linear.free[(i, 0)],
         mode => linear.resisted[(i, mode)],
     };
-    let mut model = Model::<f64, D>::new(body, [], dt);
-    let mut start = State::<f64, D>::new(body.particles.len());
-    start.set_lane(0, body.particles);
+    // Where a direction's part of a disturbance begins: positions come before velocities.
+    let from = |column: usize| if column < resisted { 0 } else { coordinates };
+    let mut step = LinearisedStep::<D>::new(body, linear, dt);
     let mut out = Mat::zeros(count, count);
     for column in 0..count {
-        let largest = linear.coordinates.iter().enumerate();
-        let largest = largest.map(|(i, at)| (direction(column, i) * at.weight).abs()).fold(0.0, f64::max);
-        let amount = size / largest;
-        let mut ends = Vec::with_capacity(2);
-        for sign in [1.0, -1.0] {
-            let mut state = start.clone();
-            for (i, at) in linear.coordinates.iter().enumerate() {
-                let change = sign * amount * at.weight * direction(column, i);
-                if column < resisted {
-                    state.position[at.particle][at.axis] += change;
-                } else {
-                    state.velocity[at.particle][at.axis] += change / time;
-                }
-            }
-            let timeline = Timeline { dt, base_step: 0, base_time: 0.0 };
-            let method = body.method;
-            Advance { model: &mut model, state: &mut state, method, timeline, first: 0, steps: 1 }.run();
-            if model.has_refused(0) {
-                return None;
-            }
-            ends.push(state);
+        let mut disturbance = vec![0.0; 2 * coordinates];
+        for (i, value) in disturbance[from(column)..].iter_mut().enumerate().take(coordinates) {
+            *value = direction(column, i);
         }
+        let after = step.take(&disturbance)?;
         for row in 0..count {
-            let moved = linear.coordinates.iter().enumerate().map(|(i, at)| {
-                let value = |state: &State<f64, D>| match row < resisted {
-                    true => state.position[at.particle][at.axis],
-                    false => state.velocity[at.particle][at.axis] * time,
-                };
-                direction(row, i) * (value(&ends[0]) - value(&ends[1])) / at.weight
-            });
-            out[(row, column)] = moved.sum::<f64>() / (2.0 * amount);
+            let part = after[from(row)..].iter().take(coordinates).enumerate();
+            out[(row, column)] = part.map(|(i, value)| direction(row, i) * value).sum::<f64>();
         }
     }
     Some(out)

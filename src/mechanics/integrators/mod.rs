@@ -172,6 +172,35 @@ impl Method {
 
     /// The largest dt that is stable for every body within `bound`; infinite for methods that no step makes unstable.
     pub fn stability_limit(self, bound: &StabilityBound) -> f64 {
+        match bound.loss_per_step {
+            // Its own formula knows what a step takes.
+            Some(loss) if self != Self::DampedVerlet => self.limit_with_loss(bound, loss),
+            _ => self.limit_with_rates(bound),
+        }
+    }
+
+    /// The same where each step takes a part of the velocity: the rate of that, −ln(1 − λ)/dt, is another at every dt.
+    fn limit_with_loss(self, bound: &StabilityBound, loss: f64) -> f64 {
+        /// No method is stable with more of ω·dt than this where little damping is.
+        const MOST: f64 = 4.0;
+        let stiffness = bound.rates.iter().map(|rates| rates.stiffness).fold(0.0, f64::max);
+        let is_stable = |dt: f64| {
+            let mass_damping = -libm::log1p(-loss) / dt;
+            dt <= self.limit_with_rates(&StabilityBound { mass_damping, loss_per_step: None, ..bound.clone() })
+        };
+        if stiffness == 0.0 || self.limit_with_rates(bound) == f64::INFINITY {
+            return self.limit_with_rates(bound);
+        }
+        let (mut stable, mut unstable) = (0.0, MOST / stiffness.sqrt());
+        // As many halvings as a number has bits.
+        for _ in 0..f64::MANTISSA_DIGITS {
+            let middle = 0.5 * (stable + unstable);
+            if is_stable(middle) { stable = middle } else { unstable = middle }
+        }
+        stable
+    }
+
+    fn limit_with_rates(self, bound: &StabilityBound) -> f64 {
         match self {
             Self::ExplicitEuler => explicit_euler::stability_limit(bound),
             Self::SemiImplicitEuler => semi_implicit_euler::stability_limit(bound),
