@@ -360,7 +360,7 @@ fn limits_of_a_block_too_large_for_its_eigenvalues_are_predicted() {
 
 #[test]
 fn what_each_step_takes_counts_as_damping() {
-    let (particles, springs) = body_in(&block(3), Damped::InProportion(0.0), 1.0);
+    let (particles, springs) = body_in(&block(2), Damped::InProportion(0.0), 1.0);
     for method in Method::ALL {
         let body = BodyParts {
             mass_damping: Some(MassDamping::per_step(0.01).unwrap()),
