@@ -19,6 +19,9 @@ use super::{BodyParts, rest_lengths};
 
 use lanczos::largest_eigenvalue;
 
+/// Springs stretched so little are stiff along their lines alone, as far as a bound is concerned: k(1 − L/l) is below this part of k.
+const ALONG: f64 = 0.2;
+
 /// Bounds of one row of the body's equations, from above.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rates {
@@ -182,9 +185,15 @@ fn rates_in_space(body: &BodyParts<'_>, lines: &[Line], across: bool) -> Rates {
         Rates { stiffness: node.stiffness.min(directional.stiffness), damping: node.damping.min(directional.damping) }
     };
     let stiffness = largest_eigenvalue(lines, &inverse_mass, |line| (line.stiffness, line.across.max(0.0)));
-    let damping = largest_eigenvalue(lines, &inverse_mass, |line| {
-        (line.damping, if line.direction == DVec3::ZERO { line.damping } else { 0.0 })
-    });
+    let damping = match (damping_law(body), ratios(body)) {
+        // C = βK but for the stiffness across stretched springs, which K has more.
+        (Damping::Proportional, [ratio, _]) if lines.iter().all(|line| line.across < ALONG * line.stiffness) => {
+            ratio * stiffness
+        }
+        _ => largest_eigenvalue(lines, &inverse_mass, |line| {
+            (line.damping, if line.direction == DVec3::ZERO { line.damping } else { 0.0 })
+        }),
+    };
     Rates { stiffness: safe.stiffness.min(stiffness), damping: safe.damping.min(damping) }
 }
 

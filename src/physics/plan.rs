@@ -126,8 +126,8 @@ impl Plan {
 }
 
 /// The limit of a body that can move across its springs changes with its pose, and is worked out again after so many steps: it costs as much as some
-/// thirty of them.
-const STEPS_PER_LIMIT: u64 = 512;
+/// twenty of them.
+const STEPS_PER_LIMIT: u64 = 1024;
 /// For a large body, which steps faster than its limit is found, after one step for so many springs.
 const SPRINGS_A_STEP: u64 = 64;
 
