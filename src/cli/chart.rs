@@ -107,12 +107,12 @@ fn loaded(names: &[String]) -> Result<BTreeMap<String, LoadedScene>, CliError> {
 
 /// What a chart depends on: a chart is measured again when this has changed.
 fn key(problem: &Problem, options: &SweepOptions) -> String {
-    let Problem { title, setting, time_scale, budget, gait_speed, .. } = problem;
+    let Problem { title, setting, time_scale, budget, unit, .. } = problem;
     let methods = Method::ALL.map(Method::name).join(" ");
     let version = env!("CARGO_PKG_VERSION");
     let quick = options.quick;
     format!(
-        "{:032x} {title:?} {setting:?} scale {time_scale} budget {budget} {gait_speed:?} quick {quick} {methods} {version}",
+        "{:032x} {title:?} {setting:?} scale {time_scale} budget {budget} {unit:?} quick {quick} {methods} {version}",
         problem.hash()
     )
 }

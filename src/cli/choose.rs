@@ -53,13 +53,16 @@ fn print(out: &mut impl Write, found: &Choice, search: Search) -> io::Result<()>
     let Choice { scene, budget, duration, .. } = found;
     match found.unit {
         Unit::Length => writeln!(out, "{scene}: an error of at most {budget:.4e} until t = {duration}")?,
-        Unit::PartOfSpeed => {
-            let sure = found.reference_error;
+        Unit::PartOfSpeed | Unit::PartOfCell => {
+            let (what, when) = match found.unit {
+                Unit::PartOfCell => ("shape, height and volume of blocks", "until"),
+                _ => ("speeds of gaits", "at"),
+            };
             writeln!(
                 out,
-                "{scene}: speeds of gaits within {} % at t = {duration}, known to {:.2} %",
+                "{scene}: {what} within {} % {when} t = {duration}, known to {:.2e} %",
                 100.0 * budget,
-                100.0 * sure
+                100.0 * found.reference_error
             )?;
         }
     }

@@ -1,4 +1,4 @@
-//! References and speeds of gaits that were computed before, in files.
+//! References, speeds of gaits and shapes of blocks that were computed before, in files.
 //!
 //! A file holds the format's name and version, the problem's hash, what was computed and a checksum over all of it. A file that is damaged, cut off or
 //! of another version counts as none: it is computed again and the file written anew.
@@ -10,12 +10,14 @@ use directories::ProjectDirs;
 
 use crate::body::ParticleId;
 
-use super::{GaitSpeeds, LabError, Problem, Reference, StickSlip, hash::Fnv};
+use super::{GaitSpeeds, LabError, Problem, Reference, Shapes, StickSlip, hash::Fnv, shapes::MEASURES};
 
 /// The beginning of every reference. The number changes with the format and with what references are made of.
 const HEAD: &[u8] = b"wriggle reference 1\n";
 /// The beginning of every file of speeds. The number changes with the format and with how they are found.
 const SPEEDS: &[u8] = b"wriggle gait speeds 1\n";
+/// The beginning of every file of shapes, likewise.
+const SHAPES: &[u8] = b"wriggle shapes 1\n";
 /// The folder that is used instead of the platform's.
 const VARIABLE: &str = "WRIGGLE_CACHE";
 
@@ -62,23 +64,47 @@ impl Cache {
     /// # Errors
     /// As [`GaitSpeeds::solve`].
     pub fn gait_speeds(&self, problem: &Problem) -> Result<GaitSpeeds, LabError> {
-        // They depend on the scene's own step too, in parts of which they are found.
+        let solve = || GaitSpeeds::solve(problem).map(|found| (found.error, found.speeds));
+        let (error, speeds) = self.numbers(problem, SPEEDS, "speeds", problem.bodies.len(), solve)?;
+        Ok(GaitSpeeds { speeds, error })
+    }
+
+    /// The shapes of the blocks of a problem: those that are kept, or else they are computed and kept. That they cannot be kept is no error.
+    ///
+    /// # Errors
+    /// As [`Shapes::solve`].
+    pub fn shapes(&self, problem: &Problem) -> Result<Shapes, LabError> {
+        let solve = || Shapes::solve(problem).map(|found| (found.error, found.moments.into_flattened()));
+        let count = problem.bodies.len() * Shapes::TIMES * MEASURES;
+        let (error, numbers) = self.numbers(problem, SHAPES, "shapes", count, solve)?;
+        Ok(Shapes { moments: numbers.as_chunks().0.to_vec(), error })
+    }
+
+    /// How far numbers are from what confirms them, and the numbers: as many as said. They are found in parts of the scene's own step, and depend on it, too.
+    fn numbers(
+        &self,
+        problem: &Problem,
+        head: &[u8],
+        suffix: &str,
+        count: usize,
+        solve: impl FnOnce() -> Result<(f64, Vec<f64>), LabError>,
+    ) -> Result<(f64, Vec<f64>), LabError> {
         let (hash, dt) = (problem.hash(), problem.setting.dt);
-        let mut head = SPEEDS.to_vec();
+        let mut head = head.to_vec();
         head.extend(hash.to_le_bytes());
         head.extend(dt.to_le_bytes());
-        let file = self.folder.as_ref().map(|folder| folder.join(format!("{hash:032x}-{:016x}.speeds", dt.to_bits())));
+        let name = format!("{hash:032x}-{:016x}.{suffix}", dt.to_bits());
         let read = |bytes: &[u8]| {
             let mut rest = whole_file(bytes)?.strip_prefix(&head[..])?;
             let error = number(&mut rest)?;
-            let speeds = problem.bodies.iter().map(|_| number(&mut rest)).collect::<Option<_>>()?;
-            rest.is_empty().then_some(GaitSpeeds { speeds, error })
+            let numbers = (0..count).map(|_| number(&mut rest)).collect::<Option<_>>()?;
+            rest.is_empty().then_some((error, numbers))
         };
-        let bytes = |found: &GaitSpeeds| {
-            let numbers = core::iter::once(&found.error).chain(&found.speeds);
+        let bytes = |(error, numbers): &(f64, Vec<f64>)| {
+            let numbers = core::iter::once(error).chain(numbers);
             with_checksum(head.iter().copied().chain(numbers.flat_map(|number| number.to_le_bytes())).collect())
         };
-        kept(file, read, bytes, || GaitSpeeds::solve(problem))
+        kept(self.folder.as_ref().map(|folder| folder.join(name)), read, bytes, solve)
     }
 }
 
@@ -87,7 +113,7 @@ fn kept<T>(
     file: Option<PathBuf>,
     read: impl Fn(&[u8]) -> Option<T>,
     bytes: impl Fn(&T) -> Vec<u8>,
-    solve: impl Fn() -> Result<T, LabError>,
+    solve: impl FnOnce() -> Result<T, LabError>,
 ) -> Result<T, LabError> {
     if let Some(known) = file.as_ref().and_then(|file| fs::read(file).ok()).and_then(|bytes| read(&bytes)) {
         return Ok(known);

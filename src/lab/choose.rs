@@ -40,7 +40,7 @@ pub struct Choice {
     pub choice: Candidate,
     /// The scene's own setting, judged in the same way.
     pub own: Candidate,
-    /// The document's setting, judged in the same way; nothing where gaits are judged, of which that document does not speak.
+    /// The document's setting, judged in the same way; nothing where gaits or blocks are judged, of which that document does not speak.
     pub document: Option<Candidate>,
     /// The candidates that no other beats in both error and cost, from the cheapest up.
     pub frontier: Vec<Candidate>,
@@ -93,7 +93,7 @@ pub fn choose(
     search: Search,
     progress: &mut dyn FnMut(usize, usize, &str),
 ) -> Result<Choice, LabError> {
-    let (unit, budget) = (truth.unit(), truth.budget(problem));
+    let (unit, budget) = (truth.unit(), problem.budget);
     let judge = Judge { problem, truth, budget, evaluation: seconds_an_evaluation(problem) };
     let mut methods: Vec<_> = Method::ALL.into_iter().filter(|method| truth.may_judge(problem, *method)).collect();
     // Those that are likely to be cheap come first, so that the others need not be followed far.
@@ -140,10 +140,11 @@ fn follow(
     /// Beaten by far: a cheaper candidate has so much less of an error.
     const FAR: f64 = 4.0;
     let budget = judge.budget;
-    // Frontiers end at so much of the budget. Speeds are told by a method that is not much more exact than those that it judges.
+    // Frontiers end at so much of the budget. Speeds and shapes are told by a method that is not much more exact than those that it judges.
     let little = match judge.truth.unit() {
         Unit::Length => 1e-3,
         Unit::PartOfSpeed => 0.25,
+        Unit::PartOfCell => 0.05,
     };
     let mut beaten = 0;
     // The largest step that is still to be tried. What is good enough is only followed in octaves.

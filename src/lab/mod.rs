@@ -16,6 +16,7 @@ mod problem;
 mod record;
 mod reference;
 mod run;
+mod shapes;
 mod stiffness;
 mod sweep;
 mod table;
@@ -32,6 +33,7 @@ pub use problem::{Problem, ProblemBody};
 pub use record::{Errors, Point, Setting, Unit, WorkPrecision};
 pub use reference::{Reference, StickSlip};
 pub use run::measure;
+pub use shapes::Shapes;
 pub use stiffness::{
     Crossing, STIFFNESS_COLUMNS, StiffRun, StiffScene, StiffnessStudy, crossing, crossing_of, factors, is_implicit,
     stiffened, stiffness_csv, stiffness_study, studied_methods,

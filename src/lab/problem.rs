@@ -16,7 +16,7 @@ use crate::{
     scenes::{self, Budget, LoadedScene, SceneBodies},
 };
 
-use super::{LabError, Setting, hash::Fnv};
+use super::{LabError, Setting, Unit, hash::Fnv};
 
 /// How many gait cycles a problem lasts.
 const CYCLES: f64 = 10.0;
@@ -171,13 +171,13 @@ pub struct Problem {
     pub setting: Setting,
     /// How much simulated time the app shows in a second.
     pub time_scale: f64,
-    /// The error that the scene can afford, in lengths; infinite where its budget is another.
+    /// The error that the scene can afford, in its unit.
     pub budget: f64,
-    /// The part by which the speed of its gaits may be wrong, where that is its budget.
-    pub gait_speed: Option<f64>,
+    /// What an error is.
+    pub unit: Unit,
     /// The longest period of a muscle, or nothing where no muscle is.
     pub period: Option<f64>,
-    /// How long it is followed: ten of the longest period, or 20 units of time where no muscle is.
+    /// How long it is followed: as long as its budget of shapes says, or else ten of the longest period, or 20 units of time where no muscle is.
     pub duration: f64,
 }
 
@@ -197,25 +197,30 @@ impl Problem {
             body.mass_damping = body.mass_damping.map(|damping| MassDamping::Rate(damping.rate_at(dt)));
         }
         let file = &scene.file;
+        let (budget, unit) = match file.budget {
+            Budget::Pixels(_) => (file.budget_length().unwrap_or(f64::INFINITY), Unit::Length),
+            Budget::GaitSpeed(part) => (part, Unit::PartOfSpeed),
+            Budget::Shape { part, .. } => (part, Unit::PartOfCell),
+        };
         let mut problem = Self {
             name: scene.source.stem(),
             title: file.title.clone(),
             bodies,
             setting: Setting { method: file.method, stick: file.stick, dt },
             time_scale: clock.time_scale().unwrap_or(file.clock.time_scale),
-            budget: file.budget_length().unwrap_or(f64::INFINITY),
-            gait_speed: match file.budget {
-                Budget::GaitSpeed(part) => Some(part),
-                Budget::Pixels(_) => None,
-            },
+            budget,
+            unit,
             period: None,
             duration: 0.0,
         };
         problem.set_duration();
+        if let Budget::Shape { until, .. } = file.budget {
+            problem.duration = until;
+        }
         Ok(problem)
     }
 
-    /// A problem of bodies that no scene has, with a budget of 1.
+    /// A problem of bodies that no scene has, with a budget of one length.
     pub fn new(name: impl Into<String>, bodies: Vec<ProblemBody>, setting: Setting) -> Self {
         let name = name.into();
         let title = name.clone();
@@ -226,7 +231,7 @@ impl Problem {
             setting,
             time_scale: 1.0,
             budget: 1.0,
-            gait_speed: None,
+            unit: Unit::Length,
             period: None,
             duration: 0.0,
         };

@@ -22,16 +22,18 @@ pub enum Unit {
     Length,
     /// A part of the speed of a gait.
     PartOfSpeed,
+    /// A part of the spacing of a block's grid, or of the block's volume; see [`Budget::Shape`](crate::scenes::Budget::Shape).
+    PartOfCell,
 }
 
-/// How far a run was from the truth: largest over all bodies and, of positions, over all shared times.
+/// How far a run was from the truth: largest over all bodies and, of positions and shapes, over all shared times.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Errors {
-    /// Of the position of any particle (lengths), or of the speed of any gait (as a part of it).
+    /// Of the position of any particle (lengths), of the speed of any gait (as a part of it), or of any measure of a block (as a part of a cell).
     pub largest: f64,
-    /// Root mean square over particles and shared times, or over gaits.
+    /// Root mean square over particles and shared times, over gaits, or over measures and times.
     pub rms: f64,
-    /// Of the way of the centre of mass at the end, or of that over the last cycles of a gait (lengths).
+    /// Of the way of the centre of mass at the end, of that over the last cycles of a gait, or of a block's height at the end (lengths).
     pub distance: f64,
 }
 

@@ -43,7 +43,7 @@ impl SweepOptions {
     }
 }
 
-/// Runs every method over its steps and compares with the truth of the scene's budget, but for the one that tells the truth of speeds and those that cannot step its bodies. Methods that let friction act in their stages are run once more with friction at
+/// Runs every method over its steps and compares with the truth of the scene's budget, but for the one that tells the truth of speeds or shapes and those that cannot step its bodies. Methods that let friction act in their stages are run once more with friction at
 /// the end of the step, where that makes a difference. The setting of the scene and that of the document are among the points. `progress` hears
 /// after every point how many of how many are done and what comes next or is left out; left out are runs of more than a thousand million spring
 /// updates (a hundred million in a quick sweep).
@@ -100,7 +100,7 @@ pub fn resumed_sweep<E>(
         limits: Method::ALL.map(|method| (method, problem.stability_limit(method, StickRule::InStages))).into(),
         setting: problem.setting,
         unit: truth.unit(),
-        budget: truth.budget(problem),
+        budget: problem.budget,
         reference: truth.words().into(),
         reference_error: truth.error(),
         machine: machine(),
@@ -118,7 +118,7 @@ fn plan(
     options: &SweepOptions,
     progress: &mut dyn FnMut(usize, usize, &str),
 ) -> Vec<Setting> {
-    // Of gaits on the ground the document does not speak.
+    // Of gaits and blocks on the ground the document does not speak.
     let document = Some(DOCUMENT).filter(|_| truth.unit() == Unit::Length);
     let mut plan = Vec::new();
     for method in Method::ALL.into_iter().filter(|method| truth.may_judge(problem, *method)) {

@@ -1,40 +1,40 @@
-//! What candidates are compared with: the positions of a reference, or the speeds of gaits.
+//! What candidates are compared with: the positions of a reference, the speeds of gaits, or the shapes of blocks.
 
 use crate::mechanics::integrators::Method;
 
-use super::{Cache, Errors, GaitSpeeds, LabError, Problem, Reference, Setting, Unit, run::errors};
+use super::{Cache, Errors, GaitSpeeds, LabError, Problem, Reference, Setting, Shapes, Unit, run::errors};
 
 /// What is asked of a method in a scene, as the scene's error budget says.
 ///
-/// A chart of positions shows how methods follow one motion; on the ground, where contacts are located by none, it shows how fast they let the animals go.
+/// A chart of positions shows how methods follow one motion; on the ground, where contacts are located by none, it shows how fast they let the animals go,
+/// or how blocks keep their shape.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Truth {
     /// All positions, in lengths.
     Positions(Reference),
     /// How fast the bodies go, as a part of their speed.
     Speeds(GaitSpeeds),
+    /// How blocks fall and keep their shape, as a part of a cell.
+    Shapes(Shapes),
 }
 
 impl Truth {
     /// What the budget of a problem asks for; a reference may come out of the cache.
     ///
     /// # Errors
-    /// If it cannot be had, or small steps tell speeds that are farther apart than the budget.
+    /// If it cannot be had, or small steps tell speeds or shapes that are farther apart than the budget.
     pub fn of(problem: &Problem, cache: &Cache) -> Result<Self, LabError> {
-        Ok(match problem.gait_speed {
-            Some(budget) => {
-                let speeds = cache.gait_speeds(problem)?;
-                if speeds.error() > budget {
-                    let what = format!(
-                        "gaits whose speeds change by {:.2} % when steps that are small become twice as large",
-                        100.0 * speeds.error()
-                    );
-                    return Err(LabError::Unsupported { scene: problem.name.clone(), what });
-                }
-                Self::Speeds(speeds)
-            }
-            None => Self::Positions(cache.reference(problem)?),
-        })
+        let (truth, what) = match problem.unit {
+            Unit::Length => return Ok(Self::Positions(cache.reference(problem)?)),
+            Unit::PartOfSpeed => (Self::Speeds(cache.gait_speeds(problem)?), "gaits whose speeds change"),
+            Unit::PartOfCell => (Self::Shapes(cache.shapes(problem)?), "blocks whose shapes change"),
+        };
+        if truth.error() > problem.budget {
+            let error = 100.0 * truth.error();
+            let what = format!("{what} by {error:.2} % when steps that are small become twice as large");
+            return Err(LabError::Unsupported { scene: problem.name.clone(), what });
+        }
+        Ok(truth)
     }
 
     /// How far it is itself from what confirms it.
@@ -42,6 +42,7 @@ impl Truth {
         match self {
             Self::Positions(reference) => reference.error(),
             Self::Speeds(speeds) => speeds.error(),
+            Self::Shapes(shapes) => shapes.error(),
         }
     }
 
@@ -50,6 +51,7 @@ impl Truth {
         match self {
             Self::Positions(_) => Reference::WORDS,
             Self::Speeds(_) => GaitSpeeds::WORDS,
+            Self::Shapes(_) => Shapes::WORDS,
         }
     }
 
@@ -58,14 +60,7 @@ impl Truth {
         match self {
             Self::Positions(_) => Unit::Length,
             Self::Speeds(_) => Unit::PartOfSpeed,
-        }
-    }
-
-    /// The error that the scene can afford, in that unit.
-    pub(super) fn budget(&self, problem: &Problem) -> f64 {
-        match self {
-            Self::Positions(_) => problem.budget,
-            Self::Speeds(_) => problem.gait_speed.unwrap_or(f64::INFINITY),
+            Self::Shapes(_) => Unit::PartOfCell,
         }
     }
 
@@ -74,12 +69,17 @@ impl Truth {
         match self {
             Self::Positions(reference) => errors(problem, reference, setting),
             Self::Speeds(speeds) => speeds.errors_of(problem, setting),
+            Self::Shapes(shapes) => shapes.errors_of(problem, setting),
         }
     }
 
     /// Whether a method can be measured: it can step every body, and does not tell the truth itself.
     pub(super) fn may_judge(&self, problem: &Problem, method: Method) -> bool {
-        let is_other = matches!(self, Self::Positions(_)) || method != GaitSpeeds::METHOD;
-        is_other && problem.can_be_stepped_by(method)
+        let tells = match self {
+            Self::Positions(_) => None,
+            Self::Speeds(_) => Some(GaitSpeeds::METHOD),
+            Self::Shapes(_) => Some(Shapes::METHOD),
+        };
+        tells != Some(method) && problem.can_be_stepped_by(method)
     }
 }

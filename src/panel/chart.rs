@@ -60,6 +60,7 @@ fn draw(ui: &mut egui::Ui, chart: &WorkPrecision, settings: &Settings) {
     let error = match chart.unit {
         Unit::Length => "error (lengths)",
         Unit::PartOfSpeed => "error of the speed (part of it)",
+        Unit::PartOfCell => "error of shape, height or volume (part of a cell)",
     };
     ui.label(RichText::new(format!("{error} against force evaluations")).size(12.0));
     let power = |mark: GridMark, _: &core::ops::RangeInclusive<f64>| {

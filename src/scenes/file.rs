@@ -75,7 +75,7 @@ impl SceneFile {
             Budget::Pixels(pixels) => {
                 Some(pixels * 2.0 * distance * libm::tan(0.5 * FIELD_OF_VIEW.to_radians()) / HEIGHT)
             }
-            Budget::GaitSpeed(_) => None,
+            Budget::GaitSpeed(_) | Budget::Shape { .. } => None,
         }
     }
 }
@@ -183,6 +183,20 @@ pub enum Budget {
     /// The speed of its gaits, distance a cycle, may be wrong by this part of it, above zero: for strands, which grip and slip with so many masses that no
     /// two steps lead to the same place after many cycles.
     GaitSpeed(#[serde(deserialize_with = "numbers::positive")] f64),
+    /// How its blocks fall, land, wobble and keep their shape may be wrong by a part: for blocks on a grid, whose masses meet the ground at moments that no
+    /// reference locates.
+    ///
+    /// Three measures of each block are compared at 200 even times: its shape error and the height of its centre of mass, in spacings of its grid, and its
+    /// volume over that of the undeformed grid. The largest difference in any of them is what counts, so that a part of 0.01 is a hundredth of the edge
+    /// of a cell, or of the volume.
+    Shape {
+        /// The part, above zero.
+        #[serde(deserialize_with = "numbers::positive")]
+        part: f64,
+        /// Until when they are compared, in simulated time, above zero: until all of them are at rest.
+        #[serde(deserialize_with = "numbers::positive")]
+        until: f64,
+    },
 }
 
 impl Default for Budget {

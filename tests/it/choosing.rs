@@ -125,7 +125,7 @@ fn is_well_chosen(name: &str) {
     let problem = Problem::of(&scenes::load(name).unwrap()).unwrap();
     let truth = match Truth::of(&problem, &Cache::none()) {
         // What is budgeted in pixels and has no reference keeps the step of its document.
-        Err(LabError::Unsupported { .. }) if problem.gait_speed.is_none() => return,
+        Err(LabError::Unsupported { .. }) if problem.unit == Unit::Length => return,
         truth => truth.unwrap(),
     };
     let found = choose(&problem, &truth, Search::Cheapest, &mut |_, _, _| {}).unwrap();
@@ -144,28 +144,44 @@ fn is_well_chosen(name: &str) {
 /// Scenes that are there to show what no method repeats: waves that stand and grow, and a worm that buckles at a wall.
 const NOT_REPRODUCIBLE: [&str; 2] = ["standing-waves", "wall"];
 
-/// The shipped scenes whose settings are chosen, with or without strands. The document's preset is what the document says, and a race is about what is
-/// not chosen.
-fn chosen(with_strands: bool) -> impl Iterator<Item = String> {
+/// What the bodies of a scene are.
+#[derive(Clone, Copy, PartialEq)]
+enum Made {
+    OfStrands,
+    OfBlocks,
+    Otherwise,
+}
+
+/// The shipped scenes whose settings are chosen. The document's preset is what the document says, and a race is about what is not chosen.
+fn chosen(made: Made) -> impl Iterator<Item = String> {
     library::list(library::SCENE).into_keys().filter(move |name| {
         let scene = scenes::load(name).unwrap();
         // The six-matrix particle system has one step and no method.
         let Ok(problem) = Problem::of(&scene) else { return false };
-        let strands = problem.bodies.iter().any(|body| body.strand.is_some());
-        name != "document"
-            && !NOT_REPRODUCIBLE.contains(&name.as_str())
-            && scene.file.truth.is_none()
-            && strands == with_strands
+        let own = match problem.unit {
+            Unit::PartOfCell => Made::OfBlocks,
+            _ if problem.bodies.iter().any(|body| body.strand.is_some()) => Made::OfStrands,
+            _ => Made::Otherwise,
+        };
+        name != "document" && !NOT_REPRODUCIBLE.contains(&name.as_str()) && scene.file.truth.is_none() && own == made
     })
 }
 
 #[test]
 fn shipped_scenes_are_stepped_no_finer_and_no_coarser_than_they_need() {
-    chosen(false).for_each(|name| is_well_chosen(&name));
+    chosen(Made::Otherwise).for_each(|name| is_well_chosen(&name));
+}
+
+#[test]
+#[ignore = "takes half a minute; cargo test --release --no-default-features --test it -- --ignored no_coarser"]
+fn shipped_blocks_are_stepped_no_finer_and_no_coarser_than_they_need() {
+    let blocks: Vec<_> = chosen(Made::OfBlocks).collect();
+    assert_eq!(blocks, ["jelly", "jelly-lab"]);
+    blocks.iter().for_each(|name| is_well_chosen(name));
 }
 
 #[test]
 #[ignore = "takes minutes: cargo test --release --test it -- --ignored no_coarser"]
 fn shipped_strands_are_stepped_no_finer_and_no_coarser_than_they_need() {
-    chosen(true).for_each(|name| is_well_chosen(&name));
+    chosen(Made::OfStrands).for_each(|name| is_well_chosen(&name));
 }

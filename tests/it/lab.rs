@@ -395,7 +395,7 @@ fn a_sweep_has_eight_steps_of_every_method_and_both_settings() {
 #[test]
 fn a_scene_with_a_budget_of_gait_speed_has_no_reference_of_positions() {
     let problem = Problem::of(&scenes::load("meadow").unwrap()).unwrap();
-    assert_eq!(problem.gait_speed, Some(0.01));
+    assert_eq!((problem.unit, problem.budget), (Unit::PartOfSpeed, 0.01));
     let error = Cache::none().reference(&problem).unwrap_err().to_string();
     assert_eq!(
         error,
@@ -413,7 +413,7 @@ fn the_speed_of_a_gait_is_that_of_the_reference() {
     problem.bodies.push(resting);
     let speeds = GaitSpeeds::solve(&problem).unwrap();
     assert_eq!((speeds.speeds().len(), speeds.speeds()[1]), (2, 0.0));
-    problem.gait_speed = None;
+    problem.unit = Unit::Length;
     let reference = Reference::solve(&problem).unwrap();
     let center = |sample| reference.positions(0, sample).iter().map(|position| position.x).sum::<f64>() / 2.0;
     // Of the thousand shared times the 600th is four of ten cycles before the last.

@@ -37,6 +37,7 @@ mod picture;
 mod picture_animals;
 mod race;
 mod saving;
+mod shapes;
 mod shows;
 mod six_files;
 mod six_house;

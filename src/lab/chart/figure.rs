@@ -83,6 +83,7 @@ fn grid(picture: &mut Picture, unit: Unit, plot: &Plot, panel: &Panel, first: bo
     let error = match unit {
         Unit::Length => "error: largest distance from the reference, in lengths",
         Unit::PartOfSpeed => "error: of the speed of a gait, as a part of it",
+        Unit::PartOfCell => "error: of shape, height or volume, as a part of a cell",
     };
     let title = first.then_some(error);
     axes::upwards(picture, frame, &panel.y, title);

@@ -22,7 +22,7 @@ use self::{
     follow::{Broken, Grain, Track, follow},
     schemes::{Dop853, Gauss},
 };
-use super::{LabError, Problem, ProblemBody};
+use super::{LabError, Problem, ProblemBody, Unit};
 
 pub use follow::StickSlip;
 
@@ -46,7 +46,7 @@ impl Reference {
     /// Follows all bodies of a problem, without looking into the cache.
     ///
     /// # Errors
-    /// If the budget is a gait's speed, or a body is a strand, meets a ground, or feels isotropic or Coulomb friction, of which no smooth piece is known, or the motion of one cannot be followed.
+    /// If the budget is a gait's speed or a shape, or a body is a strand, meets a ground, or feels isotropic or Coulomb friction, of which no smooth piece is known, or the motion of one cannot be followed.
     pub fn solve(problem: &Problem) -> Result<Self, LabError> {
         let mut reference = Self { positions: Vec::new(), velocities: Vec::new(), events: Vec::new(), error: 0.0 };
         for (index, body) in problem.bodies.iter().enumerate() {
@@ -60,12 +60,16 @@ impl Reference {
                 ProblemBody { coulomb: Some(_), .. } => Some("Coulomb friction, whose events are not located"),
                 _ => None,
             };
-            // No place that a body comes to says whether its gait has the right speed.
-            let budget =
-                problem.gait_speed.map(|part| format!("its error budget is a gait speed within {} %", 100.0 * part));
+            // No place that a body comes to says whether its gait has the right speed or its block the right shape.
+            let within = match problem.unit {
+                Unit::Length => None,
+                Unit::PartOfSpeed => Some("a gait speed"),
+                Unit::PartOfCell => Some("a shape"),
+            };
+            let budget = within.map(|what| format!("its error budget is {what} within {} %", 100.0 * problem.budget));
             let what = match (unknown, budget) {
                 (Some(what), Some(budget)) => format!("{what}; {budget}"),
-                (None, Some(budget)) => format!("a gait; {budget}"),
+                (None, Some(budget)) => format!("this motion; {budget}"),
                 (what, None) => what.unwrap_or_default().to_owned(),
             };
             if !what.is_empty() {

@@ -25,10 +25,14 @@ pub struct BlockShape {
 impl BlockShape {
     /// Measures a block of masses at spacing 1; nothing where the particles are not those of the lattice.
     pub fn measure(particles: &Particles, lattice: Lattice) -> Option<Self> {
-        if particles.len() != lattice.particles() {
+        Self::of_places(&particles.positions().collect::<Vec<_>>(), lattice)
+    }
+
+    /// As [`measure`](Self::measure), of masses at these places.
+    pub fn of_places(places: &[DVec3], lattice: Lattice) -> Option<Self> {
+        if places.len() != lattice.particles() {
             return None;
         }
-        let places: Vec<_> = particles.positions().collect();
         let [across, along, layers] = lattice.size();
         let corner = |cell: [usize; 3], i: usize| {
             // Round a face across x, then the face across from it.
@@ -48,7 +52,7 @@ impl BlockShape {
         let heights = places.iter().map(|place| place.y);
         let (low, high) = heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), y| (low.min(y), high.max(y)));
         Some(Self {
-            shape_error: shape_error(&places, lattice),
+            shape_error: shape_error(places, lattice),
             volume: (count > 0).then(|| sum / f64::from(count)),
             inverted,
             smallest_cell: (count > 0).then_some(smallest),
