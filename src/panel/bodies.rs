@@ -9,8 +9,11 @@ use super::{
 };
 
 /// The parameters that one plays with, in order; the others are folded away below them.
-const FIRST: [&str; 12] = [
+const FIRST: [&str; 15] = [
     "tilt",
+    "edges.stiffness",
+    "faces.stiffness",
+    "cubes.stiffness",
     "friction",
     "stiffness",
     "damping",

@@ -16,8 +16,14 @@ pub struct Path<'a> {
 }
 
 impl<'a> Path<'a> {
-    /// Takes a path apart. A body's name may contain points.
+    /// Takes a path apart. A body's name may contain points, and so may the field of a block: `block.faces.stiffness`.
     pub fn parse(path: &'a str) -> Self {
+        if let Some((rest, kind)) = path.rsplit_once('.').and_then(|(rest, _)| rest.rsplit_once('.'))
+            && ["edges", "faces", "cubes"].contains(&kind)
+            && let Some(owner) = rest.strip_suffix(".block").filter(|owner| !owner.is_empty())
+        {
+            return Self { owner, group: "block", index: None, field: &path[rest.len() + 1..] };
+        }
         let (rest, field) = path.rsplit_once('.').unwrap_or(("", path));
         let (before, last) = rest.rsplit_once('.').unwrap_or(("", rest));
         let (group, index) = match last.strip_suffix(']').and_then(|last| last.split_once('[')) {
@@ -75,6 +81,12 @@ impl Name {
             "rate" => ("damping by mass c", NonNegative),
             "per_step" => ("damping a step λ", NonNegative),
             "tilt" => ("tilt °", Finite),
+            "edges.stiffness" => ("stiffness k of edges", NonNegative),
+            "edges.damping" => ("damping D of edges", NonNegative),
+            "faces.stiffness" => ("stiffness k of faces", NonNegative),
+            "faces.damping" => ("damping D of faces", NonNegative),
+            "cubes.stiffness" => ("stiffness k of cubes", NonNegative),
+            "cubes.damping" => ("damping D of cubes", NonNegative),
             "gravity" => ("gravity g", NonNegative),
             "dt" => ("step dt", Positive),
             "time_scale" => ("time scale", NonNegative),

@@ -316,7 +316,7 @@ fn check_set(scene: &LoadedScene) -> Result<(), FileError> {
         return Ok(());
     }
     let mut world = spawn::scratch(scene)?;
-    for (path, &value) in &scene.file.set {
+    for (path, value) in parameters::in_order(&scene.file.set) {
         parameters::set(&mut world, path, value)
             .map_err(|error| scene_conflict(scene, "set".into(), error.to_string()))?;
     }

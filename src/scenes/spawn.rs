@@ -46,7 +46,7 @@ pub fn open(world: &mut World, scene: LoadedScene) -> Result<(), FileError> {
     }
     world.insert_resource(clock);
     spawn(world, &scene, bodies);
-    for (path, &value) in &scene.file.set {
+    for (path, value) in parameters::in_order(&scene.file.set) {
         if let Err(error) = parameters::set(world, path, value) {
             warn!("{}: set: {error}", scene.source);
         }

@@ -22,6 +22,7 @@ mod jelly_exercise;
 mod jelly_files;
 mod jelly_limits;
 mod jelly_regular;
+mod jelly_springs;
 mod lab;
 mod laws;
 mod limits;

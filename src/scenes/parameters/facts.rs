@@ -1,7 +1,7 @@
 //! What is known of every quantity that can be set: where it belongs, what it must be, and what it is.
 
 use super::quantity::{Group, Quantity};
-use crate::body::Requirement;
+use crate::body::{Neighbours, Requirement};
 
 /// What is said about a quantity: group, field, what it must be, the usual range, unit and help.
 pub(super) type Facts = (Group, &'static str, Requirement, (f64, f64), &'static str, &'static str);
@@ -135,6 +135,22 @@ impl Quantity {
                 "°",
                 "how far it leans; setting it puts it back to its start",
             ),
+            Self::KindStiffness(kind) => {
+                let (field, help) = match kind {
+                    Neighbours::Edges => ("edges.stiffness", "stiffness k of springs along the edges of cells"),
+                    Neighbours::Faces => ("faces.stiffness", "stiffness k of springs across the faces of cells"),
+                    Neighbours::Cubes => ("cubes.stiffness", "stiffness k of springs across cells"),
+                };
+                (Group::Block, field, NonNegative, (0.0, 10.0), "force/length", help)
+            }
+            Self::KindDamping(kind) => {
+                let (field, help) = match kind {
+                    Neighbours::Edges => ("edges.damping", "damping D of springs along the edges of cells"),
+                    Neighbours::Faces => ("faces.damping", "damping D of springs across the faces of cells"),
+                    Neighbours::Cubes => ("cubes.damping", "damping D of springs across cells"),
+                };
+                (Group::Block, field, NonNegative, (0.0, 10.0), "force·time/length", help)
+            }
             Self::Six(six) => six.facts(),
         }
     }

@@ -1,13 +1,14 @@
 //! Every live parameter under one path: the panel, scene files (`set`) and `--set` share this registry.
 //!
-//! `worm.springs.stiffness` is that of all springs of the body `worm`, `worm.springs[1].stiffness` that of one. Muscles are counted in the order
+//! `worm.springs.stiffness` is that of all springs of the body `worm`, `worm.springs[1].stiffness` that of one, and `jelly.block.faces.stiffness` that of all
+//! springs of a block which join neighbours across faces. Muscles are counted in the order
 //! of the springs that they drive; `muscle`, `legs`, `weight` and `drive` are rules of a creature of the six-matrix particle system, in the order of its file. `clock.dt` and `clock.time_scale` belong to the scene.
 
 mod facts;
 mod quantity;
 mod six;
 
-use core::ops::RangeInclusive;
+use core::ops::{Range, RangeInclusive};
 use std::collections::{BTreeMap, HashMap};
 
 use bevy::prelude::*;
@@ -16,7 +17,7 @@ use thiserror::Error;
 use self::quantity::{Group, Quantity};
 use super::{CurrentScene, SceneBodies};
 use crate::{
-    body::{BodyError, Particles},
+    body::{BodyError, Particles, Springs},
     creatures::library::looks_like,
     mechanics::integrators::Method,
     physics::Clock,
@@ -80,6 +81,8 @@ pub(super) struct Values {
     body: String,
     quantity: Quantity,
     values: Vec<f64>,
+    /// The springs that it sets, where it is of neighbours of a kind and they all have its value.
+    springs: Option<Range<usize>>,
 }
 
 /// The elements of larger bodies can be set one by one and are not listed: nobody reads a hundred thousand springs.
@@ -98,7 +101,7 @@ pub fn list(world: &mut World) -> Vec<Parameter> {
             clock_value(world, quantity).map(|value| quantity.parameter(format!("clock.{}", quantity.field()), value)),
         );
     }
-    for Values { body, quantity, values } in body_values(world) {
+    for Values { body, quantity, values, .. } in body_values(world) {
         all.extend(values.first().map(|&first| quantity.parameter(quantity.path(&body, None), first)));
         if quantity.group().is_indexed() && values.len() <= MOST_LISTED {
             let elements = values.iter().enumerate();
@@ -154,31 +157,50 @@ pub(super) fn body_values(world: &mut World) -> Vec<Values> {
         for quantity in Quantity::OF_BODIES {
             let values = quantity.read(entity);
             if !values.is_empty() {
-                all.push(Values { body: name.to_string(), quantity, values });
+                let springs = quantity.springs(entity).filter(|range| {
+                    entity.get::<Springs>().is_some_and(|springs| springs.uniform(range.clone()).is_some())
+                });
+                all.push(Values { body: name.to_string(), quantity, values, springs });
             }
         }
     }
     all
 }
 
-/// What has to be set for the values `base` to become `now`, by path: all elements of a body at once where they are alike.
+/// What has to be set for the values `base` to become `now`, by path: all elements of a body at once where they are alike, else all springs between
+/// neighbours of a kind where those are.
 pub(super) fn changes(base: Vec<Values>, now: Vec<Values>) -> BTreeMap<String, f64> {
     let base: HashMap<_, _> = base.into_iter().map(|base| ((base.body, base.quantity), base.values)).collect();
     let mut all = BTreeMap::new();
-    for Values { body, quantity, values } in now {
-        let key = (body, quantity);
-        let Some(base) = base.get(&key) else { continue };
-        let path = |index| quantity.path(&key.0, index);
+    for Values { body, quantity, values, .. } in &now {
+        let Some(base) = base.get(&(body.clone(), *quantity)) else { continue };
         let changed: Vec<_> = (0..values.len()).filter(|&i| base.get(i) != Some(&values[i])).collect();
         match &values[..] {
-            _ if changed.is_empty() => {}
+            _ if changed.is_empty() || quantity.of_all_springs().is_some() => {}
             [first, rest @ ..] if rest.iter().all(|value| value == first) => {
-                all.insert(path(None), *first);
+                all.insert(quantity.path(body, None), *first);
             }
-            _ => all.extend(changed.into_iter().map(|i| (path(Some(i)), values[i]))),
+            _ => {
+                let kinds =
+                    now.iter().filter(|kind| kind.body == *body && kind.quantity.of_all_springs() == Some(*quantity));
+                let kinds: Vec<_> = kinds.filter_map(|kind| Some((kind.springs.clone()?, kind))).collect();
+                for i in changed {
+                    match kinds.iter().find(|(springs, _)| springs.contains(&i)) {
+                        Some((_, kind)) => all.insert(kind.quantity.path(body, None), values[i]),
+                        None => all.insert(quantity.path(body, Some(i)), values[i]),
+                    };
+                }
+            }
         }
     }
     all
+}
+
+/// The parameters of a file in the order in which they are set: what is of all springs of a body first, so that what is of some of them holds.
+pub(super) fn in_order(set: &BTreeMap<String, f64>) -> impl Iterator<Item = (&str, f64)> {
+    let of_all = |path: &str| path.contains(".springs.");
+    let (first, then) = (set.iter().filter(move |(path, _)| of_all(path)), set.iter());
+    first.chain(then.filter(move |(path, _)| !of_all(path))).map(|(path, value)| (path.as_str(), *value))
 }
 
 /// The bodies that have a name: those of the scene in its order, then others.

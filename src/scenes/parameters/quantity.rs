@@ -1,12 +1,14 @@
 //! What can be set: how each quantity is read, checked and written.
 
+use core::ops::Range;
+
 use bevy::{ecs::world::EntityRef, prelude::*};
 
 use super::{Kind, Parameter, six::SixQuantity};
 use crate::{
     body::{
-        BodyError, Coefficients, CoulombFriction, Gravity, MassDamping, Muscle, Muscles, Particle, ParticleId,
-        Particles, Rules, SpineFriction, Spring, SpringId, Springs, TravelingWave, TravelingWaves,
+        BodyError, Coefficients, CoulombFriction, Gravity, Lattice, MassDamping, Muscle, Muscles, Neighbours, Particle,
+        ParticleId, Particles, Rules, SpineFriction, Spring, SpringId, Springs, TravelingWave, TravelingWaves,
     },
     creatures::Attitude,
     physics::{Clock, StartState},
@@ -28,7 +30,7 @@ pub(super) enum Group {
     /// Damping by what surrounds a body.
     MassDamping,
     Gravity,
-    /// The attitude in which a block starts.
+    /// The attitude in which a block starts, and its springs by the neighbours that they join.
     Block,
     Bonds,
     Collisions,
@@ -136,12 +138,15 @@ pub(super) enum Quantity {
     DampingPerStep,
     Gravity,
     Tilt,
+    /// Of all springs of a block between neighbours of a kind.
+    KindStiffness(Neighbours),
+    KindDamping(Neighbours),
     /// Of a body of the six-matrix particle system.
     Six(SixQuantity),
 }
 
 impl Quantity {
-    pub(super) const OF_BODIES: [Self; 46] = [
+    pub(super) const OF_BODIES: [Self; 52] = [
         Self::Stiffness,
         Self::Damping,
         Self::RestLength,
@@ -169,6 +174,12 @@ impl Quantity {
         Self::DampingPerStep,
         Self::Gravity,
         Self::Tilt,
+        Self::KindStiffness(Neighbours::Edges),
+        Self::KindDamping(Neighbours::Edges),
+        Self::KindStiffness(Neighbours::Faces),
+        Self::KindDamping(Neighbours::Faces),
+        Self::KindStiffness(Neighbours::Cubes),
+        Self::KindDamping(Neighbours::Cubes),
         Self::Six(SixQuantity::Damping),
         Self::Six(SixQuantity::BondStiffness),
         Self::Six(SixQuantity::CollisionStiffness),
@@ -264,7 +275,8 @@ impl Quantity {
             Group::MassDamping => usize::from(body.get::<MassDamping>().is_some_and(|damping| self.is_of(*damping))),
             Group::Gravity => usize::from(body.contains::<Particles>() && has_springs),
             Group::Bonds | Group::Collisions | Group::Muscle | Group::Legs | Group::Weight | Group::Drive => 0,
-            Group::Block => usize::from(body.contains::<Attitude>()),
+            Group::Block if self == Self::Tilt => usize::from(body.contains::<Attitude>()),
+            Group::Block => usize::from(self.springs(body).is_some()),
         }
     }
 
@@ -307,7 +319,12 @@ impl Quantity {
                 .into_iter()
                 .collect(),
             Group::Gravity => vec![body.get::<Gravity>().map_or(0.0, |gravity| gravity.acceleration())],
-            Group::Block => body.get::<Attitude>().map(Attitude::tilt).into_iter().collect(),
+            Group::Block if self == Self::Tilt => body.get::<Attitude>().map(Attitude::tilt).into_iter().collect(),
+            Group::Block => {
+                let first = self.springs(body).map(|springs| SpringId(springs.start as u32));
+                let first = first.zip(body.get::<Springs>()).and_then(|(first, springs)| springs.get(first));
+                first.map(|mut spring| *self.of_spring(&mut spring)).into_iter().collect()
+            }
             Group::Bonds | Group::Collisions | Group::Muscle | Group::Legs | Group::Weight | Group::Drive => Vec::new(),
         }
     }
@@ -320,6 +337,9 @@ impl Quantity {
         value: f64,
         time: f64,
     ) -> Result<(), BodyError> {
+        if let Some(springs) = self.springs(body.as_readonly()) {
+            return self.write_springs(body, springs, value);
+        }
         let values = self.read(body.as_readonly());
         let changed = (0..values.len()).filter(|&i| index.is_none_or(|index| index == i) && values[i] != value);
         for i in changed {
@@ -410,9 +430,41 @@ impl Quantity {
         Ok(())
     }
 
+    /// What a quantity of neighbours of a kind is called for all springs together; nothing for others.
+    pub(super) fn of_all_springs(self) -> Option<Self> {
+        match self {
+            Self::KindStiffness(_) => Some(Self::Stiffness),
+            Self::KindDamping(_) => Some(Self::Damping),
+            _ => None,
+        }
+    }
+
+    /// The springs that a quantity of a block sets, where it has any.
+    pub(super) fn springs(self, body: EntityRef) -> Option<Range<usize>> {
+        let (Self::KindStiffness(kind) | Self::KindDamping(kind)) = self else { return None };
+        let range = body.get::<Lattice>()?.range(kind);
+        body.get::<Springs>().filter(|springs| !range.is_empty() && range.end <= springs.len()).map(|_| range)
+    }
+
+    /// Writes the value to springs, touching them only where one changes.
+    fn write_springs(self, mut body: EntityWorldMut, range: Range<usize>, value: f64) -> Result<(), BodyError> {
+        let Some(mut springs) = body.get_mut::<Springs>() else { return Ok(()) };
+        for i in range {
+            // Springs are counted in u32.
+            let id = SpringId(i as u32);
+            let Some(mut spring) = springs.get(id) else { continue };
+            let own = self.of_spring(&mut spring);
+            if *own != value {
+                *own = value;
+                springs.set(id, spring)?;
+            }
+        }
+        Ok(())
+    }
+
     fn of_spring(self, spring: &mut Spring) -> &mut f64 {
         match self {
-            Self::Damping => &mut spring.damping,
+            Self::Damping | Self::KindDamping(_) => &mut spring.damping,
             Self::RestLength => &mut spring.rest_length,
             _ => &mut spring.stiffness,
         }
