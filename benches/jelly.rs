@@ -2,7 +2,10 @@
 //!
 //! Each row steps a block with springs to all neighbours that lies on the ground, by damped Verlet as its scene does, contact and gravity
 //! included; `elem` is one spring update, and `fastest` the shortest of many short runs, for machines that others use, too. `bare` is the same arithmetic on a few arrays that stay in the first cache: the practical limit of the processor. Rows of
-//! `damped` have damping in their springs, too. With `JELLY_THREADS=2` the layers of a block are shared by two threads.
+//! `damped` have damping in their springs, too.
+//!
+//! `JELLY_THREADS=2 cargo bench --no-default-features --bench jelly` measures nothing but how much faster two threads are than one that steps the same block: both in turns, so
+//! that what else the machine does befalls both.
 
 use std::{
     hint::black_box,
@@ -13,7 +16,7 @@ use bevy::{
     prelude::*,
     tasks::{ComputeTaskPool, TaskPoolBuilder},
 };
-use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
+use criterion::{BenchmarkId, Criterion, Throughput, criterion_group};
 use wriggle::{
     body::{Gravity, Ground, MassDamping, Neighbours},
     creatures::{Body, Creature, JellyPlan, NeighboursPlan, Pose, SpringPlan},
@@ -128,10 +131,69 @@ fn bare(c: &mut Criterion) {
     group.finish();
 }
 
-fn blocks(c: &mut Criterion) {
-    let threads = std::env::var("JELLY_THREADS").ok().and_then(|text| text.parse().ok()).unwrap_or(1);
+/// Several steps at once, as a tick takes them.
+const AT_ONCE: u64 = 6;
+
+/// A block on its way.
+struct Run {
+    model: Model<f64, 3>,
+    state: State<f64, 3>,
+    method: Method,
+    first: u64,
+}
+
+impl Run {
+    fn new(parts: &BodyParts<'_>) -> Self {
+        let mut state = State::new(parts.particles.len());
+        state.set_lane(0, parts.particles);
+        Self { model: Model::new(parts, [], DT), state, method: parts.method, first: 0 }
+    }
+
+    fn steps(&mut self, steps: u64) {
+        let Self { model, state, method, first } = self;
+        let timeline = Timeline { dt: DT, base_step: 0, base_time: 0.0 };
+        Advance { model, state, method: *method, timeline, first: *first, steps }.run();
+        *first += steps;
+    }
+
+    /// The seconds that steps take.
+    fn timed(&mut self) -> f64 {
+        let start = Instant::now();
+        self.steps(AT_ONCE);
+        start.elapsed().as_secs_f64()
+    }
+}
+
+/// How much faster some threads step a block than one does.
+fn cores(threads: usize) {
+    /// So often both are timed.
+    const TURNS: usize = 400;
+    // Smaller blocks are not shared.
+    let sizes = [30, 60];
+    let bodies = sizes.map(|size| block(size, 0.0));
+    // A block that is made before there are threads goes on by itself.
+    let alone = bodies.each_ref().map(|body| Run::new(&parts(body)));
     ComputeTaskPool::get_or_init(|| TaskPoolBuilder::new().num_threads(threads).build());
-    println!("{threads} threads");
+    for ((size, body), mut alone) in sizes.into_iter().zip(&bodies).zip(alone) {
+        let mut shared = Run::new(&parts(body));
+        let mut seconds: Vec<_> = (0..TURNS).map(|_| [alone.timed(), shared.timed()]).collect();
+        let fastest = [0, 1].map(|i| seconds.iter().map(|pair| pair[i]).fold(f64::INFINITY, f64::min));
+        seconds.sort_by(|a, b| (a[0] / a[1]).total_cmp(&(b[0] / b[1])));
+        let median = seconds[TURNS / 2][0] / seconds[TURNS / 2][1];
+        let rate = |seconds: f64| (AT_ONCE * body.springs.len() as u64) as f64 / seconds / 1e6;
+        println!(
+            "{size}³: {threads} threads are {:.2} times as fast as one, fastest of {TURNS} turns (median of the turns {median:.2}): {:.0} and {:.0} \
+             million spring updates a second",
+            fastest[0] / fastest[1],
+            rate(fastest[1]),
+            rate(fastest[0]),
+        );
+        black_box((&alone.state, &shared.state));
+    }
+}
+
+fn blocks(c: &mut Criterion) {
+    ComputeTaskPool::get_or_init(|| TaskPoolBuilder::new().num_threads(1).build());
     let mut group = c.benchmark_group("step");
     group.warm_up_time(Duration::from_millis(300)).measurement_time(Duration::from_secs(2)).sample_size(20);
     for (name, damping, sizes) in [("stiff", 0.0, &[8, 10, 20, 30, 60, 100][..]), ("damped", 0.1, &[10, 30])] {
@@ -139,35 +201,19 @@ fn blocks(c: &mut Criterion) {
             let before = resident_bytes();
             let body = block(size, damping);
             let parts = parts(&body);
-            let mut model = Model::<f64, 3>::new(&parts, [], DT);
-            let mut state = State::new(parts.particles.len());
-            state.set_lane(0, parts.particles);
+            let mut run = Run::new(&parts);
             let springs = parts.springs.len() as u64;
-            let mut first = 0;
-            let mut steps = |steps| {
-                let timeline = Timeline { dt: DT, base_step: 0, base_time: 0.0 };
-                let method = parts.method;
-                Advance { model: &mut model, state: &mut state, method, timeline, first, steps }.run();
-                first += steps;
-            };
-            steps(1);
+            run.steps(1);
             if let (Some(before), Some(after)) = (before, resident_bytes()) {
                 let bytes = after.saturating_sub(before) as f64 / f64::from(size * size * size);
                 println!("{size}³: {springs} springs, {bytes:.0} bytes a particle");
             }
-            // Several steps at once, as a tick takes them.
-            const AT_ONCE: u64 = 6;
             group.throughput(Throughput::Elements(AT_ONCE * springs));
-            group.bench_function(BenchmarkId::new(name, size), |b| b.iter(|| steps(AT_ONCE)));
+            group.bench_function(BenchmarkId::new(name, size), |b| b.iter(|| run.steps(AT_ONCE)));
             // What the machine can do while nobody else wants it.
-            let fastest = (0..200_000_000 / (AT_ONCE * springs)).map(|_| {
-                let start = Instant::now();
-                steps(AT_ONCE);
-                start.elapsed().as_secs_f64()
-            });
-            let fastest = fastest.fold(f64::INFINITY, f64::min);
+            let fastest = (0..200_000_000 / (AT_ONCE * springs)).map(|_| run.timed()).fold(f64::INFINITY, f64::min);
             println!("fastest: {:.0} million spring updates a second", (AT_ONCE * springs) as f64 / fastest / 1e6);
-            black_box(&state);
+            black_box(&run.state);
         }
     }
     group.finish();
@@ -180,13 +226,22 @@ fn tick(c: &mut Criterion) {
     if let Err(error) = scenes::load("jelly").and_then(|scene| scenes::open(app.world_mut(), scene)) {
         panic!("{error}");
     }
-    // 40 units of time a second in 64 ticks are 6.25 steps of 0.1.
-    app.world_mut().resource_mut::<Clock>().set_steps_per_tick(7);
+    // 40 units of time a second in 64 ticks are 2.6 steps of 0.24.
+    app.world_mut().resource_mut::<Clock>().set_steps_per_tick(3);
     let mut group = c.benchmark_group("tick");
     group.warm_up_time(Duration::from_millis(300)).measurement_time(Duration::from_secs(2)).sample_size(40);
-    group.bench_function("jelly 8³, 7 steps", |b| b.iter(|| black_box(&mut app).world_mut().run_schedule(Ticks)));
+    group.bench_function("jelly 8³, 3 steps", |b| b.iter(|| black_box(&mut app).world_mut().run_schedule(Ticks)));
     group.finish();
 }
 
 criterion_group!(benches, bare, blocks, tick);
-criterion_main!(benches);
+
+fn main() {
+    match std::env::var("JELLY_THREADS").ok().and_then(|text| text.parse().ok()) {
+        Some(threads) if threads > 1 => cores(threads),
+        _ => {
+            benches();
+            Criterion::default().configure_from_args().final_summary();
+        }
+    }
+}
