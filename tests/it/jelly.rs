@@ -113,12 +113,56 @@ fn a_block_starts_turned_and_dropped_from_where_it_says() {
 }
 
 #[test]
+fn a_block_is_turned_right_handed_and_headed_from_x_towards_z() {
+    let corner = |plan: JellyPlan, heading: f64| {
+        let body = Creature::from(plan).body(Pose { heading, ..Pose::default() }).unwrap();
+        body.particles.position(ParticleId(2)).unwrap()
+    };
+    let plan = |axis, angle, tilt| JellyPlan {
+        rotation: Some(Rotation { axis, angle }),
+        tilt,
+        ..cube(3, &Neighbours::ALL, 0.0)
+    };
+    let about_y = (0.0, 3.0, 0.0);
+    for (found, place) in [
+        (corner(plan(about_y, 0.0, 0.0), 0.0), DVec3::new(1.0, 0.0, -1.0)),
+        (corner(plan(about_y, 90.0, 0.0), 0.0), DVec3::new(-1.0, 0.0, -1.0)),
+        (corner(plan(about_y, 0.0, 0.0), 90.0), DVec3::new(1.0, 0.0, 1.0)),
+        // Turned first, then leant, then headed.
+        (corner(plan((1.0, 0.0, 0.0), 90.0, 90.0), 90.0), DVec3::new(1.0, 2.0, -1.0)),
+    ] {
+        assert!((found - place).length() < 1e-12, "{found}, not {place}");
+    }
+}
+
+#[test]
+fn cells_that_are_inside_out_are_counted() {
+    let body = body(cube(3, &Neighbours::ALL, 0.0));
+    let lattice = body.block.unwrap().0;
+    let measured = |change: fn(DVec3) -> DVec3| {
+        let places: Vec<_> = body.particles.positions().map(change).collect();
+        BlockShape::of_places(&places, lattice).unwrap()
+    };
+    let mirrored = measured(|place| DVec3::new(-place.x, place.y, place.z));
+    assert_eq!(mirrored.inverted, 8);
+    assert!((mirrored.volume.unwrap() + 1.0).abs() < 1e-12 && (mirrored.smallest_cell.unwrap() + 1.0).abs() < 1e-12);
+    // Masses stand at −1, 0 and 1: half of the cells are folded over.
+    let folded = measured(|place| DVec3::new(place.x.abs(), place.y, place.z));
+    assert_eq!((folded.inverted, folded.height), (4, 2.0));
+    assert!(folded.volume.unwrap().abs() < 1e-12, "{folded:?}");
+    assert_eq!(measured(|place| place).inverted, 0);
+    assert_eq!(BlockShape::of_places(&[DVec3::ZERO], lattice), None);
+}
+
+#[test]
 fn the_tilt_of_a_block_is_a_parameter_that_puts_it_back() {
     let mut app = stepping_app(0.1, 100);
     scenes::open(app.world_mut(), scenes::load("jelly-lab").unwrap()).unwrap();
+    app.world_mut().resource_mut::<Clock>().set_steps_per_tick(100);
     app.update();
     app.update();
     let block = app.world().resource::<SceneBodies>().0[1];
+    assert!(particles(&app, block).velocities().all(|v| v.y < 0.0), "it falls");
     parameters::set(app.world_mut(), "faces.block.tilt", 45.0).unwrap();
     let start = particles(&app, block).clone();
     assert!(start.velocities().all(|v| v == DVec3::ZERO));
@@ -321,6 +365,43 @@ fn a_pull_is_capped_and_changes_no_bit_with_the_ticks() {
     // At a corner there are seven springs of stiffness 1, and the pull is at most as that of ¼ of them over four lengths.
     assert!((momentum.length() - 7.0 * 6.0).abs() < 0.05 * 42.0, "{momentum}");
     assert_eq!(run(1).1, bits);
+}
+
+#[test]
+fn a_pull_is_damped_critically() {
+    // A mass alone is pulled with its mass as stiffness: 1 − (1 + t)·e^(−t) of the way.
+    let (mut app, block) = app_of(cube(1, &[], 0.0), Method::RungeKutta4, 0.01, 100);
+    let start = particles(&app, block).position(ParticleId(0)).unwrap();
+    let way = DVec3::X * 2.0;
+    app.world_mut().entity_mut(block).insert(Pull { particle: ParticleId(0), target: start + way });
+    for _ in 0..5 {
+        app.update();
+        let t = app.world().resource::<Clock>().time();
+        let done = 1.0 - (1.0 + t) * libm::exp(-t);
+        let at = particles(&app, block).position(ParticleId(0)).unwrap();
+        assert!((at - start - way * done).length() < 1e-6, "{at} at {t}");
+    }
+}
+
+#[test]
+fn springs_tear_where_they_are_stretched_beyond_their_limit_and_no_sooner() {
+    // All strains are 0.15.
+    let torn_at = |strain: f64| {
+        let mut creature = Creature::from(cube(3, &Neighbours::ALL, 0.0));
+        creature.tear = Some(strain);
+        let mut app = stepping_app(1e-3, 1);
+        let block = app.world_mut().spawn(Method::StormerVerlet).id();
+        let mut body = creature.body(Pose::default()).unwrap();
+        for i in (0..27).map(ParticleId) {
+            let particle = body.particles.get(i).unwrap();
+            body.particles.set(i, Particle { position: particle.position * 1.15, ..particle }).unwrap();
+        }
+        bevy::ecs::system::EntityCommand::apply(body, app.world_mut().entity_mut(block));
+        app.update();
+        app.world().get::<Tearing>(block).unwrap().count()
+    };
+    let all = Neighbours::ALL.map(|kind| kind.springs([3; 3])).iter().sum::<u64>();
+    assert_eq!((torn_at(0.149) as u64, torn_at(0.151)), (all, 0));
 }
 
 #[test]

@@ -5,7 +5,7 @@ use faer::{Mat, Side, prelude::Solve};
 use wriggle::{
     body::{MassDamping, Neighbours, Particles, Springs},
     creatures::{JellyPlan, Rotation},
-    mechanics::{integrators::Method, stability_bound},
+    mechanics::{BodyParts, integrators::Method, stability_bound},
     physics::{Clock, Frozen, body_parts},
 };
 
@@ -143,6 +143,14 @@ fn damping_by_step_lowers_the_largest_step() {
     let damping = Some(MassDamping::per_step(0.5).unwrap());
     let found = bisected(0.9 * theory, 1.1 * theory, |dt| is_stable(&plan, Method::DampedVerlet, damping, dt));
     assert!((found / theory - 1.0).abs() < 0.05, "{found} of {theory}");
+    // What is told before anything explodes is lower by the same.
+    let body = body(plan);
+    let told = |mass_damping| {
+        let parts = BodyParts { mass_damping, ..BodyParts::new(&body.particles, &body.springs, Method::DampedVerlet) };
+        parts.stability_limit(0.0)
+    };
+    let ratio = told(damping) / told(None);
+    assert!((ratio - 0.5 * 3.0_f64.sqrt()).abs() < 1e-3, "{ratio}");
 }
 
 #[test]
