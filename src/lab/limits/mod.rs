@@ -51,7 +51,7 @@ pub struct Limits {
     /// The smallest step at which the scene's body explodes or the method refuses it; nothing where the method cannot step the body at all.
     #[serde(serialize_with = "limit")]
     pub explodes: Option<f64>,
-    /// Why the body explodes at another step than the linearised one, where it does.
+    /// Why the body explodes at another step than the linearised one, where it does, or cannot be stepped at all.
     pub reason: Option<&'static str>,
 }
 
@@ -81,8 +81,9 @@ pub fn limits(scene: &LoadedScene, progress: &(dyn Fn(usize, usize) + Sync)) -> 
 
 fn row(scene: &LoadedScene, body: &ProblemBody, method: Method) -> Limits {
     let parts = body.parts(method, scene.file.stick);
+    let refused = parts.refused_by_method();
     let predicted = predicted_limit(&parts);
-    let linearised = linearised_limit(&parts);
+    let linearised = if refused.is_some() { None } else { linearised_limit(&parts) };
     let explodes = linearised.and_then(|linearised| scene_limit(&parts, linearised));
     let reason = linearised
         .zip(explodes)
@@ -96,7 +97,7 @@ fn row(scene: &LoadedScene, body: &ProblemBody, method: Method) -> Limits {
         bound: parts.stability_limit(0.0),
         linearised,
         explodes,
-        reason,
+        reason: refused.or(reason),
     }
 }
 
