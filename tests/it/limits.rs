@@ -358,6 +358,22 @@ fn limits_of_a_block_too_large_for_its_eigenvalues_are_predicted() {
 }
 
 #[test]
+fn a_cloud_of_masses_without_springs_is_limited_by_its_damping_alone() {
+    for masses in [30, 200] {
+        let places = (0..masses).map(|i| Particle::at(DVec3::new(f64::from(i), f64::from(i % 7), f64::from(i % 3))));
+        let particles = Particles::new(places).unwrap();
+        let springs = Springs::new([], &particles).unwrap();
+        let body = BodyParts::new(&particles, &springs, Method::ExplicitEuler);
+        assert_eq!(linearised_limit(&body), Some(f64::INFINITY));
+        // v' = −cv: stable up to 2/c.
+        let body = BodyParts { mass_damping: Some(MassDamping::rate(4.0).unwrap()), ..body };
+        for limit in [predicted_limit(&body), linearised_limit(&body)] {
+            assert!((limit.unwrap() / 0.5 - 1.0).abs() < 1e-3, "{masses}: {limit:?}");
+        }
+    }
+}
+
+#[test]
 fn what_each_step_takes_counts_as_damping() {
     let (particles, springs) = body_in(&block(2), Damped::InProportion(0.0), 1.0);
     for method in Method::ALL {

@@ -92,9 +92,9 @@ impl Linear {
         let following = following(body, dimensions, &coordinates);
         let norm = |matrix: &Mat<f64>| spectrum(matrix).map(|values| values.into_iter().fold(0.0, f64::max));
         let (stiffness, damping) = (within(&stiffness), within(&damping));
-        let stiffest = match stiffness.self_adjoint_eigen(Side::Lower).ok()?.U() {
-            directions if directions.ncols() > 0 => &resisted * directions.col(directions.ncols() - 1),
-            _ => Col::zeros(coordinates.len()),
+        let stiffest = match stiffness.ncols() {
+            0 => Col::zeros(coordinates.len()),
+            last => &resisted * stiffness.self_adjoint_eigen(Side::Lower).ok()?.U().col(last - 1),
         };
         let followed = following.as_ref().map_or(0.0, Mat::norm_l2);
         let rate = (norm(&stiffness)? + followed).sqrt().max(norm(&damping)? + by_mass(body));
@@ -128,12 +128,15 @@ impl Linear {
         let (stiffness, damping) = (along(&springs), along(&damping));
         let none_is_pinned = !body.particles.pinned().contains(&true);
         let drifting = usize::from(none_is_pinned);
+        let mass: f64 = body.particles.masses().iter().sum();
         Some(Self {
             resisted: Mat::from_fn(count, 1, |i, _| direction[i]),
             springs,
             stiffest: direction.iter().copied().collect(),
-            free: Mat::from_fn(count, drifting, |i, _| {
-                if coordinates[i].axis == 0 { 1.0 / coordinates[i].weight } else { 0.0 }
+            // The whole body along x.
+            free: Mat::from_fn(count, drifting, |i, _| match coordinates[i] {
+                Coordinate { axis: 0, weight, .. } => 1.0 / (weight * mass.sqrt()),
+                _ => 0.0,
             }),
             stiffness: Mat::from_fn(1, 1, |_, _| stiffness),
             damping: Mat::from_fn(1, 1, |_, _| damping),
@@ -143,6 +146,11 @@ impl Linear {
             decisive: stability_bound(body, 0.0).damping == Damping::Proportional,
             coordinates,
         })
+    }
+
+    /// Whether a spring resists anything.
+    pub(super) fn is_stiff(&self) -> bool {
+        !is_zero(&self.springs)
     }
 
     /// A time in which nothing much happens but a step of `dt`: speeds in it compare with positions.
@@ -163,6 +171,11 @@ impl Linear {
     pub(super) fn mass_rate(&self, dt: f64) -> f64 {
         self.mass_damping.map_or(0.0, |damping| damping.rate_at(dt))
     }
+}
+
+/// Whether nothing in a matrix is anything but zero.
+fn is_zero(matrix: &SparseColMat<usize, f64>) -> bool {
+    matrix.val().iter().all(|value| *value == 0.0)
 }
 
 /// The eigenvalues of a symmetric matrix, in rising order.
@@ -196,9 +209,12 @@ fn by_mass(body: &BodyParts<'_>) -> f64 {
     }
 }
 
-/// The direction of length 1 that a symmetric matrix stretches most.
+/// The direction of length 1 that a symmetric matrix stretches most; zero for a matrix that is.
 fn stiffest_direction(matrix: &SparseColMat<usize, f64>) -> Option<Col<f64>> {
     let count = matrix.ncols();
+    if is_zero(matrix) {
+        return Some(Col::zeros(count));
+    }
     // Of no regularity, so that it has a part of the stiffest direction.
     let start = Col::from_fn(count, |i| ((i * 37 + i / 3 * 53) % 101) as f64 / 50.0 - 1.01);
     let start = &start / start.norm_l2();
