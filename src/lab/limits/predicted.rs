@@ -4,7 +4,7 @@
 //!
 //! - **kicks** (semi-implicit Euler, Störmer–Verlet, damped Verlet): x⁺ − (2 − λ)x + (1 − λ)x⁻ = −h²Kx − hC(x − x⁻) is stable exactly while
 //!   λ_max(h²K + 2hC) ≤ 4 − 2λ, with any K and C. Leapfrog's centred damping leaves λ_max(h²K) ≤ 4.
-//!   Where rest lengths follow the pose K is not symmetric, and the formula is [iterated](super::iterated) with the matrices.
+//!   Where rest lengths follow the pose K is not symmetric, and the formula is iterated with the matrices.
 //! - **polynomials** (explicit Runge–Kutta methods): stable exactly while |R(hμ)| ≤ 1, R(z) = Σ zⁿ/n!, for all roots μ of the
 //!   quadratic eigenvalue problem μ² + μC + K.
 

@@ -26,7 +26,7 @@ const MOST_COORDINATES: usize = 60;
 const ROUNDING: f64 = 1e-8;
 
 /// The smallest step at which a small disturbance of the body's present pose grows: without friction, contact and gravity, with its muscles at rest.
-/// To a part in ten thousand by the eigenvalues of the step's matrix, for large bodies to half a percent by [iteration](super::iterated). Infinite
+/// To a part in ten thousand by the eigenvalues of the step's matrix, for large bodies to half a percent by iteration. Infinite
 /// where none grows at any step; nothing where the method cannot step the body.
 pub fn linearised_limit(body: &BodyParts<'_>) -> Option<f64> {
     let linear = Linear::of(body)?;
