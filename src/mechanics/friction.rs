@@ -101,17 +101,23 @@ impl<R: Real, const D: usize> Model<R, D> {
 
     /// Lays the frame of a level ground where a mass is.
     #[inline(always)]
-    fn lay(&self, mut frame: Frame<R, D>, particle: u32, position: &[[R; D]]) -> Frame<R, D> {
-        let (zero, one) = (R::splat(0.0), R::splat(1.0));
+    fn lay(&self, frame: Frame<R, D>, particle: u32, position: &[[R; D]]) -> Frame<R, D> {
         let x = position[particle as usize];
-        let near = R::splat(Ground::CONTACT_DISTANCE);
         match self.contact.kind {
-            _ if D != 3 => {}
-            ContactKind::None => {}
-            ContactKind::Flat => frame.touches = x[1].if_below(near, one, zero),
-            ContactKind::Terrain => return self.lay_on_terrain(frame, x),
+            ContactKind::Terrain if D == 3 => self.lay_on_terrain(frame, x),
+            _ => Frame { touches: self.touches(x), ..frame },
         }
-        frame
+    }
+
+    /// 1 where a mass on level ground touches it, and everywhere without a ground.
+    #[inline(always)]
+    fn touches(&self, x: [R; D]) -> R {
+        let (zero, one) = (R::splat(0.0), R::splat(1.0));
+        if D == 3 && self.contact.kind == ContactKind::Flat {
+            x[1].if_below(R::splat(Ground::CONTACT_DISTANCE), one, zero)
+        } else {
+            one
+        }
     }
 
     // On its own, as are the sections' spine vectors: methods ask for frames in many places and are compiled for many kinds of bodies and processors.
@@ -167,29 +173,35 @@ impl<R: Real, const D: usize> Model<R, D> {
             };
             let level = self.level_frame(direction([R::splat(0.0); D], span).1);
             for row in section {
-                let frame = self.lay(level, row.particle, position);
-                self.slow(&friction, &frame, position[row.particle as usize], &mut velocity[row.particle as usize]);
+                let mass = row.particle as usize;
+                let (x, v) = (position[mass], velocity[mass]);
+                velocity[mass] = match self.contact.kind {
+                    ContactKind::Terrain if D == 3 => self.slow(&friction, &self.lay_on_terrain(level, x), x, v),
+                    _ => self.slow(&friction, &Frame { touches: self.touches(x), ..level }, x, v),
+                };
             }
         }
     }
 
     /// What spine friction leaves of a velocity over a step.
     #[inline(always)]
-    fn slow(&self, friction: &FrictionRow<R>, frame: &Frame<R, D>, x: [R; D], v: &mut [R; D]) {
-        ratchet(friction, frame, v);
+    fn slow(&self, friction: &FrictionRow<R>, frame: &Frame<R, D>, x: [R; D], mut v: [R; D]) -> [R; D] {
+        ratchet(friction, frame, &mut v);
         if friction.has_drag {
             let zero = R::splat(0.0);
-            let sliding = dot(*v, frame.forward);
-            subtract(v, frame.forward, zero.if_below(sliding, sliding, zero) * friction.drag_loss * frame.touches);
+            let sliding = dot(v, frame.forward);
+            subtract(&mut v, frame.forward, zero.if_below(sliding, sliding, zero) * friction.drag_loss * frame.touches);
         }
         if friction.has_grip && D == 3 {
             let loss = self.grip_at(friction, x).loss;
-            subtract(v, frame.side, dot(*v, frame.side) * loss * frame.touches);
+            let sideways = dot(v, frame.side);
+            subtract(&mut v, frame.side, sideways * loss * frame.touches);
         }
         if friction.has_isotropic {
-            let sliding = self.sliding(frame, *v);
-            subtract(v, sliding, friction.isotropic.loss * frame.touches);
+            let sliding = self.sliding(frame, v);
+            subtract(&mut v, sliding, friction.isotropic.loss * frame.touches);
         }
+        v
     }
 
     /// Lets friction act on the velocities with which a step ends: what the stages admit, or all of it where it acts only now.
