@@ -55,10 +55,12 @@ pub(super) fn steps_of_flag(flag: &str, time: f64, dt: f64) -> Result<u64, Strin
         if below > 1e12 {
             return format!("{flag} {time:e} is {below:e} steps of dt {dt:e}; give a shorter time or a larger dt");
         }
-        format!(
-            "{flag} {time} is no whole number of steps of dt {dt}; the nearest that are: {} and {}",
-            below * dt,
-            (below + 1.0) * dt
-        )
+        // Without the rounding errors of a product: the nearest number of twelve digits is taken for the same time.
+        let shown = |steps: f64| {
+            let time = steps * dt;
+            format!("{time:.11e}").parse().unwrap_or(time)
+        };
+        let (before, after) = (shown(below), shown(below + 1.0));
+        format!("{flag} {time} is no whole number of steps of dt {dt}; the nearest that are: {before} and {after}")
     })
 }

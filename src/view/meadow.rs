@@ -1,6 +1,7 @@
 //! The surroundings of a scene whose creatures stand on a ground: what is grass and what is sand, rounds, hills and walls, under an open sky.
 
 use core::f32::consts::TAU;
+use std::sync::Arc;
 
 use bevy::{camera::visibility::NoFrustumCulling, light::NotShadowCaster, math::DVec3, prelude::*};
 use rand::{RngExt, SeedableRng, rngs::SmallRng};
@@ -14,7 +15,7 @@ use super::{
     travel::Travels,
 };
 use crate::{
-    body::{Ground, Patch, Surface},
+    body::{Ground, Patch, Surface, Terrain},
     mechanics::ground_distance,
     scenes::SceneMember,
 };
@@ -27,7 +28,9 @@ const TILE: f32 = 96.0;
 /// Below this side grip a patch of the ground is sand, above it grass.
 const SANDY: f64 = 2.0;
 /// How high a wall is drawn, and how long.
-const WALL: [f32; 2] = [3.0, 60.0];
+const WALL: [f32; 2] = [3.0, 200.0];
+/// A plane whose normal rises less than this stands upright, as a wall.
+const UPRIGHT: f64 = 0.1;
 
 /// Spawns the ground, what grows and lies on it, and the sky.
 pub(super) fn set_up(
@@ -66,14 +69,29 @@ pub(super) fn set_up(
     spawn(backdrop::clouds(&mut random, quality), haze, false, Some(0.0), &here);
     spawn(backdrop::hills(&mut random, quality), Paint::matte(false), false, Some(0.0), &here);
     let middle = if tile.is_some() { Vec3::ZERO } else { middle };
-    spawn(land(ground, middle), Paint::matte(shadows), false, tile, &here);
+    let lying = without_walls(ground);
+    spawn(land(&lying, middle), Paint::matte(shadows), false, tile, &here);
     spawn(walls(ground), Paint::matte(shadows), true, None, &here);
-    let [leaves, stones] = scattered(ground, middle, quality, &mut random);
+    let [leaves, stones] = scattered(&lying, middle, quality, &mut random);
     let around: Vec<_> =
         (-1..=1).flat_map(|x| (-1..=1).map(move |z| Vec3::new(x as f32, 0.0, z as f32) * TILE)).collect();
     let places = if tile.is_some() { &around[..] } else { &here };
     spawn(leaves, Paint::leafy(shadows), false, tile, places);
     spawn(stones, Paint::matte(shadows), true, tile, places);
+}
+
+/// The ground without its walls, which stand on it: masses feel them as the side of something solid, but what lies behind a fence is a meadow too.
+fn without_walls(ground: &Ground) -> Ground {
+    let Ground::Terrain(terrain) = ground else { return ground.clone() };
+    let lies = |surface: &Surface| !matches!(*surface, Surface::Plane { normal, .. } if is_upright(normal));
+    Terrain::new(terrain.surfaces().iter().copied().filter(lies))
+        .and_then(|lying| lying.with_patches(terrain.patches().iter().copied()))
+        .map_or_else(|_| ground.clone(), |lying| Ground::Terrain(Arc::new(lying)))
+}
+
+/// Whether a plane with this normal is a wall.
+fn is_upright(normal: (f64, f64, f64)) -> bool {
+    DVec3::from(normal).normalize().y <= UPRIGHT
 }
 
 /// The height of the ground at a spot, as it is seen from above.
@@ -84,7 +102,7 @@ fn height(ground: &Ground, x: f32, z: f32) -> f32 {
         Surface::Floor { height } => Some(height),
         Surface::Plane { point, normal } => {
             let (n, p) = (DVec3::from(normal).normalize(), DVec3::from(point));
-            (n.y > 0.1).then(|| p.y - (n.x * (x - p.x) + n.z * (z - p.z)) / n.y)
+            (!is_upright(normal)).then(|| p.y - (n.x * (x - p.x) + n.z * (z - p.z)) / n.y)
         }
         Surface::Cliff { edge, radius, drop } => {
             let beyond = x - edge;
@@ -183,10 +201,10 @@ fn walls(ground: &Ground) -> Clay {
     let Ground::Terrain(terrain) = ground else { return clay };
     for surface in terrain.surfaces() {
         let Surface::Plane { point, normal } = *surface else { continue };
-        let (point, normal) = (DVec3::from(point).as_vec3(), DVec3::from(normal).normalize().as_vec3());
-        if normal.y > 0.1 {
+        if !is_upright(normal) {
             continue;
         }
+        let (point, normal) = (DVec3::from(point).as_vec3(), DVec3::from(normal).normalize().as_vec3());
         let along = normal.cross(Vec3::Y).normalize_or(Vec3::Z);
         let turn = Quat::from_mat3(&Mat3::from_cols(normal, along.cross(normal), along));
         let foot = height(ground, point.x + normal.x, point.z + normal.z);
@@ -267,10 +285,7 @@ fn tuft(leaves: &mut Clay, foot: Vec3, flower: bool, random: &mut SmallRng) {
 
 #[cfg(test)]
 mod tests {
-    use std::sync::Arc;
-
     use super::*;
-    use crate::body::Terrain;
 
     #[test]
     fn what_is_drawn_is_the_surface_that_masses_stand_on() {
@@ -284,5 +299,16 @@ mod tests {
             let at = DVec3::new(x, f64::from(height(&ground, x as f32, z as f32)), z);
             assert!(ground_distance(&ground, at).0.abs() < 1e-5, "({x}, {z}): {}", ground_distance(&ground, at).0);
         }
+    }
+    #[test]
+    fn what_lies_behind_a_wall_is_a_meadow_too() {
+        let wall = Surface::Plane { point: (14.0, 0.0, 0.0), normal: (-1.0, 0.0, 0.0) };
+        let slope = Surface::Plane { point: (0.0, -9.0, 0.0), normal: (-0.6, 0.8, 0.0) };
+        let ground = Ground::Terrain(Arc::new(Terrain::new([Surface::Floor { height: 0.0 }, wall, slope]).unwrap()));
+        let Ground::Terrain(lying) = without_walls(&ground) else { panic!("it has surfaces") };
+        assert_eq!(lying.surfaces(), [Surface::Floor { height: 0.0 }, slope]);
+        // A wall alone stays: a ground without a surface is none.
+        let wall = Ground::Terrain(Arc::new(Terrain::new([wall]).unwrap()));
+        assert_eq!(without_walls(&wall), wall);
     }
 }

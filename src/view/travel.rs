@@ -6,22 +6,39 @@ use bevy_panorbit_camera::{PanOrbitCamera, PanOrbitCameraSystemSet};
 use super::camera::{FollowWorm, SceneCamera};
 use crate::{
     physics::Shown,
-    scenes::{CurrentScene, Props, SceneBodies},
+    scenes::{self, CurrentScene, FIELD_OF_VIEW, Props, SceneBodies},
 };
 
 /// Moves with what the camera looks at, by whole multiples of a length after which it looks the same; at any place where that is 0.
 #[derive(Clone, Component, Copy, Debug)]
 pub(super) struct Travels(pub f32);
 
-/// Where the animals of the scene were on average when the camera last went along.
+/// No further away does the camera go by itself: animals that are further apart than it then sees are too small to be looked at together.
+const FARTHEST: f32 = 100.0;
+
+/// Where the animals of the scene were when the camera last went along.
+#[derive(Clone, Copy)]
+struct Seen {
+    /// On average.
+    middle: Vec3,
+    /// From where the scene's camera would see them as large a part of the picture apart as at the start.
+    distance: f32,
+}
+
+/// Where the animals of the scene are as a whole.
 #[derive(Default, Resource)]
-struct Herd(Option<Vec3>);
+struct Herd {
+    /// How far apart they were at the start: the largest distance of one of them from the middle.
+    reach_at_start: f32,
+    seen: Option<Seen>,
+}
 
 pub(super) fn plugin(app: &mut App) {
     app.init_resource::<Herd>().add_systems(PostUpdate, (go_along, travel).chain().before(PanOrbitCameraSystemSet));
 }
 
-/// Carries the camera along with the animals as a whole, wherever its user has turned it. In the garden and on roads, which are one place, it stays.
+/// Carries the camera along with the animals as a whole, and away from them as they part, wherever its user has turned it. In the garden and on roads,
+/// which are one place, it stays.
 fn go_along(
     scene: Option<Res<CurrentScene>>,
     bodies: Option<Res<SceneBodies>>,
@@ -32,7 +49,7 @@ fn go_along(
 ) {
     let (Some(scene), Some(bodies)) = (scene, bodies) else { return };
     if scene.is_changed() {
-        herd.0 = None;
+        herd.seen = None;
     }
     let middle = |shown: &Shown| shown.positions().iter().sum::<Vec3>() / shown.positions().len().max(1) as f32;
     let middles: Vec<_> = bodies.0.iter().filter_map(|body| shown.get(*body).ok()).map(middle).collect();
@@ -41,16 +58,34 @@ fn go_along(
         return;
     }
     let now = middles.iter().sum::<Vec3>() / middles.len() as f32;
-    let moved = herd.0.map_or(Vec3::ZERO, |before| now - before).with_y(0.0);
-    herd.0 = Some(now);
-    if following.0 || moved == Vec3::ZERO {
+    let reach = middles.iter().map(|middle| middle.distance(now)).fold(0.0, f32::max);
+    if herd.seen.is_none() {
+        herd.reach_at_start = reach;
+    }
+    let scenes::Camera::Orbit { distance, .. } = scene.file.camera;
+    let distance = distance as f32;
+    let seen = Seen { middle: now, distance: further(distance, reach - herd.reach_at_start) };
+    let before = herd.seen.replace(seen).unwrap_or(seen);
+    let moved = (now - before.middle).with_y(0.0);
+    let wider = seen.distance / before.distance;
+    if following.0 || (moved == Vec3::ZERO && wider == 1.0) {
         return;
     }
     for mut orbit in &mut cameras {
         orbit.focus += moved;
         orbit.target_focus += moved;
+        orbit.radius = orbit.radius.map(|radius| radius * wider);
+        orbit.target_radius *= wider;
         orbit.force_update = true;
     }
+}
+
+/// From how far away what is so much further apart than at `distance` fits into the picture, no further than [`FARTHEST`].
+fn further(distance: f32, apart: f32) -> f32 {
+    // Pictures are wider than high, and what parts towards the camera or away from it is foreshortened.
+    const WIDE: f32 = 16.0 / 9.0;
+    let per_length = ((0.5 * FIELD_OF_VIEW as f32).to_radians().tan() * WIDE).recip();
+    (distance + apart.max(0.0) * per_length).min(FARTHEST.max(distance))
 }
 
 fn travel(cameras: Query<&PanOrbitCamera, With<SceneCamera>>, mut things: Query<(&Travels, &mut Transform)>) {

@@ -90,3 +90,20 @@ fn every_animal_is_seen_where_its_masses_are_and_nowhere_else() {
         assert!(ground[1] > 70 && ground[1] > ground[2] + 15, "{name}: the ground is {ground:?}");
     }
 }
+
+#[test]
+fn animals_that_part_stay_in_the_picture() {
+    if !can_draw() {
+        return;
+    }
+    for name in ["standing-waves", "wall"] {
+        let (mut shot, bodies) = scene(name, 700.0);
+        for (body, points) in &bodies {
+            let world = shot.world_mut();
+            let mut shown = world.query::<(&Name, &Shown)>();
+            let (_, shown) = shown.iter(world).find(|(name, _)| name.as_str() == body).expect("it is still there");
+            let all = if shown.positions().len() >= 12 { shown.positions().len() / 4 } else { shown.positions().len() };
+            assert_eq!(points.len(), all, "{name}: {body} is in the picture as a whole");
+        }
+    }
+}
