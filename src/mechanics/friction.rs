@@ -61,7 +61,7 @@ impl<R: Real, const D: usize> Model<R, D> {
     /// The frame of a particle where the spine has this direction.
     #[inline(always)]
     pub(super) fn frame_along(&self, particle: u32, spine: [R; D], position: &[[R; D]]) -> Frame<R, D> {
-        self.lay(self.level_frame(spine), particle, position)
+        self.lay(self.level_frame(spine), position[particle as usize])
     }
 
     /// The frame of a mass that stands on level ground.
@@ -101,26 +101,26 @@ impl<R: Real, const D: usize> Model<R, D> {
 
     /// Lays the frame of a level ground where a mass is.
     #[inline(always)]
-    fn lay(&self, frame: Frame<R, D>, particle: u32, position: &[[R; D]]) -> Frame<R, D> {
-        let x = position[particle as usize];
+    fn lay(&self, level: Frame<R, D>, x: [R; D]) -> Frame<R, D> {
         match self.contact.kind {
-            ContactKind::Terrain if D == 3 => self.lay_on_terrain(frame, x),
-            _ => Frame { touches: self.touches(x), ..frame },
+            ContactKind::Terrain if D == 3 => self.lay_on_terrain(level, x),
+            _ => Frame { touches: self.touches(x), ..level },
         }
     }
 
-    /// 1 where a mass on level ground touches it, and everywhere without a ground.
+    /// 1 where a mass touches the ground or there is none, else 0.
     #[inline(always)]
     fn touches(&self, x: [R; D]) -> R {
         let (zero, one) = (R::splat(0.0), R::splat(1.0));
-        if D == 3 && self.contact.kind == ContactKind::Flat {
-            x[1].if_below(R::splat(Ground::CONTACT_DISTANCE), one, zero)
-        } else {
-            one
+        let near = R::splat(Ground::CONTACT_DISTANCE);
+        match self.contact.kind {
+            ContactKind::Flat if D == 3 => x[1].if_below(near, one, zero),
+            ContactKind::Terrain if D == 3 => self.contact.distance(x).0.if_below(near, one, zero),
+            _ => one,
         }
     }
 
-    // On its own, as are the sections' spine vectors: methods ask for frames in many places and are compiled for many kinds of bodies and processors.
+    // On its own: methods ask for frames in many places and are compiled for many kinds of bodies and processors.
     #[inline(never)]
     fn lay_on_terrain(&self, mut frame: Frame<R, D>, x: [R; D]) -> Frame<R, D> {
         let (zero, one) = (R::splat(0.0), R::splat(1.0));
@@ -164,17 +164,12 @@ impl<R: Real, const D: usize> Model<R, D> {
     #[inline(always)]
     fn apply_spine_friction(&self, position: &[[R; D]], velocity: &mut [[R; D]]) {
         let Some(friction) = self.friction else { return };
-        let width = self.sections.as_ref().map_or(1, |sections| sections.width);
-        for section in self.spine.chunks(width) {
-            // The masses of a section share its spine vector.
-            let span = match &self.sections {
-                None => self.span(section[0], position),
-                Some(sections) => sections.span_inline(section[0], position),
-            };
-            let level = self.level_frame(direction([R::splat(0.0); D], span).1);
+        for section in self.by_section() {
+            let level = self.level_frame(self.spine_vector(section[0], position));
             for row in section {
                 let mass = row.particle as usize;
                 let (x, v) = (position[mass], velocity[mass]);
+                // Each kind of ground by itself: a frame that may come from either is put together in memory, which takes longer than what it is for.
                 velocity[mass] = match self.contact.kind {
                     ContactKind::Terrain if D == 3 => self.slow(&friction, &self.lay_on_terrain(level, x), x, v),
                     _ => self.slow(&friction, &Frame { touches: self.touches(x), ..level }, x, v),
@@ -183,10 +178,18 @@ impl<R: Real, const D: usize> Model<R, D> {
         }
     }
 
+    /// The spine section by section: the masses of one share its spine vector and how fast that turns.
+    #[inline(always)]
+    fn by_section(&self) -> impl Iterator<Item = &[SpineRow]> {
+        self.spine.chunks(self.sections.as_ref().map_or(1, |sections| sections.width))
+    }
+
     /// What spine friction leaves of a velocity over a step.
     #[inline(always)]
     fn slow(&self, friction: &FrictionRow<R>, frame: &Frame<R, D>, x: [R; D], mut v: [R; D]) -> [R; D] {
-        ratchet(friction, frame, &mut v);
+        if friction.ratchet {
+            v = ratchet(frame.spine, frame.touches, v);
+        }
         if friction.has_drag {
             let zero = R::splat(0.0);
             let sliding = dot(v, frame.forward);
@@ -223,9 +226,15 @@ impl<R: Real, const D: usize> Model<R, D> {
 
     #[inline(always)]
     fn admit_spine_velocity(&self, position: &[[R; D]], velocity: &mut [[R; D]]) {
-        let (Some(friction), true) = (self.friction, self.stick.asks_in_stages()) else { return };
-        for &row in &self.spine {
-            ratchet(&friction, &self.frame(row, position), &mut velocity[row.particle as usize]);
+        let (Some(FrictionRow { ratchet: true, .. }), true) = (self.friction, self.stick.asks_in_stages()) else {
+            return;
+        };
+        for section in self.by_section() {
+            let spine = self.spine_vector(section[0], position);
+            for row in section {
+                let mass = row.particle as usize;
+                velocity[mass] = ratchet(spine, self.touches(position[mass]), velocity[mass]);
+            }
         }
     }
 
@@ -238,22 +247,23 @@ impl<R: Real, const D: usize> Model<R, D> {
         acceleration: &[[R; D]],
         velocity: &mut [[R; D]],
     ) {
-        let (Some(friction), true) = (self.friction, self.stick.asks_in_stages()) else { return };
-        if !friction.ratchet {
+        let (Some(FrictionRow { ratchet: true, .. }), true) = (self.friction, self.stick.asks_in_stages()) else {
             return;
-        }
+        };
         let zero = R::splat(0.0);
-        for &row in &self.spine {
-            let frame = self.frame(row, position);
-            let mass = row.particle as usize;
-            let push = dot(acceleration[mass], frame.spine)
-                + dot(stage_velocity[mass], self.spine_turn(row, position, stage_velocity));
-            let soon = dot(stage_velocity[mass], frame.spine) + push * R::splat(2.0 * AT_ONCE * self.dt);
-            let v = &mut velocity[mass];
-            let sliding = dot(*v, frame.spine);
-            // What starts to slip is let go; as above, rounding errors must not decide.
-            let stopped = (sliding.abs() * R::splat(AT_ONCE)).if_below(soon, zero, sliding);
-            subtract(v, frame.spine, stopped * frame.touches);
+        for section in self.by_section() {
+            let spine = self.spine_vector(section[0], position);
+            let turn = self.spine_turn(section[0], position, stage_velocity);
+            for row in section {
+                let mass = row.particle as usize;
+                let push = dot(acceleration[mass], spine) + dot(stage_velocity[mass], turn);
+                let soon = dot(stage_velocity[mass], spine) + push * R::splat(2.0 * AT_ONCE * self.dt);
+                let v = &mut velocity[mass];
+                let sliding = dot(*v, spine);
+                // What starts to slip is let go; as above, rounding errors must not decide.
+                let stopped = (sliding.abs() * R::splat(AT_ONCE)).if_below(soon, zero, sliding);
+                subtract(v, spine, stopped * self.touches(position[mass]));
+            }
         }
     }
 
@@ -270,43 +280,62 @@ impl<R: Real, const D: usize> Model<R, D> {
     #[inline(always)]
     fn admit_spine_acceleration(&self, position: &[[R; D]], velocity: &[[R; D]], acceleration: &mut [[R; D]]) {
         let Some(friction) = self.friction else { return };
-        let zero = R::splat(0.0);
-        for &row in &self.spine {
-            let frame = self.frame(row, position);
-            let v = velocity[row.particle as usize];
-            let a = &mut acceleration[row.particle as usize];
-            if friction.has_drag {
-                let sliding = dot(v, frame.forward);
-                subtract(a, frame.forward, zero.if_below(sliding, sliding, zero) * friction.drag * frame.touches);
-            }
-            if friction.has_grip && D == 3 {
-                let rate = self.grip_at(&friction, position[row.particle as usize]).rate;
-                subtract(a, frame.side, dot(v, frame.side) * rate * frame.touches);
-            }
-            if friction.has_isotropic {
-                subtract(a, self.sliding(&frame, v), friction.isotropic.rate * frame.touches);
-            }
-            if friction.ratchet {
-                // d(S·v)/dt: what is held stays where the spine leaves it as it turns.
-                let push = dot(*a, frame.spine) + dot(v, self.spine_turn(row, position, velocity));
-                let back = push.if_below(zero, push, zero);
-                // What the push would stop at once is at rest: a speed of rounding errors must not decide.
-                let soon = dot(v, frame.spine) + push * R::splat(self.dt * AT_ONCE);
-                let held = soon.if_below(zero, back, zero);
-                subtract(a, frame.spine, held * frame.touches);
+        for section in self.by_section() {
+            let level = self.level_frame(self.spine_vector(section[0], position));
+            let turn = self.spine_turn(section[0], position, velocity);
+            for row in section {
+                let mass = row.particle as usize;
+                let (x, v, a) = (position[mass], velocity[mass], acceleration[mass]);
+                // Each by itself, as in `apply_spine_friction`.
+                acceleration[mass] = match self.contact.kind {
+                    ContactKind::Terrain if D == 3 => {
+                        self.admitted(&friction, &self.lay_on_terrain(level, x), turn, x, v, a)
+                    }
+                    _ => self.admitted(&friction, &Frame { touches: self.touches(x), ..level }, turn, x, v, a),
+                };
             }
         }
+    }
+
+    /// What spine friction makes of the acceleration of one mass, whose spine vector turns so fast.
+    #[inline(always)]
+    fn admitted(
+        &self,
+        friction: &FrictionRow<R>,
+        frame: &Frame<R, D>,
+        turn: [R; D],
+        x: [R; D],
+        v: [R; D],
+        mut a: [R; D],
+    ) -> [R; D] {
+        let zero = R::splat(0.0);
+        if friction.has_drag {
+            let sliding = dot(v, frame.forward);
+            subtract(&mut a, frame.forward, zero.if_below(sliding, sliding, zero) * friction.drag * frame.touches);
+        }
+        if friction.has_grip && D == 3 {
+            let rate = self.grip_at(friction, x).rate;
+            subtract(&mut a, frame.side, dot(v, frame.side) * rate * frame.touches);
+        }
+        if friction.has_isotropic {
+            subtract(&mut a, self.sliding(frame, v), friction.isotropic.rate * frame.touches);
+        }
+        if friction.ratchet {
+            // d(S·v)/dt: what is held stays where the spine leaves it as it turns.
+            let push = dot(a, frame.spine) + dot(v, turn);
+            let back = push.if_below(zero, push, zero);
+            // What the push would stop at once is at rest: a speed of rounding errors must not decide.
+            let soon = dot(v, frame.spine) + push * R::splat(self.dt * AT_ONCE);
+            let held = soon.if_below(zero, back, zero);
+            subtract(&mut a, frame.spine, held * frame.touches);
+        }
+        a
     }
 }
 
 impl Sections {
-    #[inline(never)]
-    fn span<R: Real, const D: usize>(&self, row: SpineRow, columns: &[[R; D]]) -> [R; D] {
-        self.span_inline(row, columns)
-    }
-
     #[inline(always)]
-    fn span_inline<R: Real, const D: usize>(&self, row: SpineRow, columns: &[[R; D]]) -> [R; D] {
+    fn span<R: Real, const D: usize>(&self, row: SpineRow, columns: &[[R; D]]) -> [R; D] {
         let (previous, mut span) = (self.sum(row.previous, columns), self.sum(row.next, columns));
         for axis in 0..D {
             span[axis] -= previous[axis];
@@ -327,13 +356,13 @@ impl Sections {
     }
 }
 
+/// Takes from a velocity what leads back along the spine, where the mass touches the ground.
 #[inline(always)]
-fn ratchet<R: Real, const D: usize>(friction: &FrictionRow<R>, frame: &Frame<R, D>, v: &mut [R; D]) {
-    if friction.ratchet {
-        let zero = R::splat(0.0);
-        let sliding = dot(*v, frame.spine);
-        subtract(v, frame.spine, sliding.if_below(zero, sliding, zero) * frame.touches);
-    }
+fn ratchet<R: Real, const D: usize>(spine: [R; D], touches: R, mut v: [R; D]) -> [R; D] {
+    let zero = R::splat(0.0);
+    let sliding = dot(v, spine);
+    subtract(&mut v, spine, sliding.if_below(zero, sliding, zero) * touches);
+    v
 }
 
 #[inline(always)]

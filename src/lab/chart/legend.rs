@@ -17,7 +17,7 @@ const CAPTION_SIZE: f64 = 13.0;
 const CAPTION_LINE: f64 = 18.0;
 pub(super) const MARGIN: f64 = 28.0;
 /// Where the legend is.
-pub(super) const LEFT: f64 = 1270.0;
+pub(super) const LEFT: f64 = 1254.0;
 /// How wide the sample of a line is.
 pub(super) const SAMPLE: f64 = 44.0;
 
