@@ -243,14 +243,14 @@ pub(super) struct Sections {
 impl Sections {
     /// The sections of a spine and its rows, one a particle.
     fn of(friction: &SpineFriction) -> (Self, Vec<SpineRow>) {
-        let sections = friction.sections().enumerate();
         let last = (friction.spine().len() / friction.width()).saturating_sub(1);
-        let rows = sections.flat_map(|(i, section)| {
+        let mut rows = Vec::with_capacity(friction.spine().len());
+        for (i, section) in friction.sections().enumerate() {
             let (previous, next) = (i.saturating_sub(1) as u32, (i + 1).min(last) as u32);
-            section.iter().map(move |particle| SpineRow { particle: particle.0, previous, next })
-        });
+            rows.extend(section.iter().map(|particle| SpineRow { particle: particle.0, previous, next }));
+        }
         let particles = friction.spine().iter().map(|particle| particle.0).collect();
-        (Self { particles, width: friction.width() }, rows.collect())
+        (Self { particles, width: friction.width() }, rows)
     }
 }
 

@@ -22,6 +22,11 @@ use super::{
 /// How many bodies are stepped side by side: one AVX-512 register of f64, two of AVX, four of SSE2.
 const LANES: usize = 8;
 
+/// Fewer spring updates than these in a tick are not shared among threads: waking one takes longer.
+const WORTH_SHARING: u64 = 10_000;
+/// A step of a method with a solver takes as long as about so many evaluations: some ten steps of Runge–Kutta 4 (`benches/methods.rs`).
+const SOLVER_EVALUATIONS: u64 = 40;
+
 /// What the physics has cost.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Resource)]
 pub struct Cost {
@@ -152,24 +157,31 @@ fn step_all(items: &mut [Item<'_>], timeline: Timeline, range: Range<u64>) {
             alike.chunks_mut(width)
         })
         .collect();
-    match &mut groups[..] {
-        [] => {}
-        [one] => step_group(one, timeline, range),
-        many => {
-            let pool = ComputeTaskPool::get();
-            let share = many.len().div_ceil(4 * pool.thread_num());
-            pool.scope(|scope| {
-                for part in many.chunks_mut(share) {
-                    let range = range.clone();
-                    scope.spawn(async move {
-                        for group in part {
-                            step_group(group, timeline, range.clone());
-                        }
-                    });
+    if groups.len() < 2 || work(&groups, &range) < WORTH_SHARING {
+        groups.iter_mut().for_each(|group| step_group(group, timeline, range.clone()));
+        return;
+    }
+    let pool = ComputeTaskPool::get();
+    let share = groups.len().div_ceil(4 * pool.thread_num());
+    pool.scope(|scope| {
+        for part in groups.chunks_mut(share) {
+            let range = range.clone();
+            scope.spawn(async move {
+                for group in part {
+                    step_group(group, timeline, range.clone());
                 }
             });
         }
-    }
+    });
+}
+
+/// How many spring updates these steps take, about.
+fn work(groups: &[&mut [Item<'_>]], steps: &Range<u64>) -> u64 {
+    let step = |item: &Item<'_>| {
+        let body = item.body();
+        body.springs.len() as u64 * body.method.about().evaluations.unwrap_or(SOLVER_EVALUATIONS)
+    };
+    groups.iter().flat_map(|group| group.iter().map(step)).sum::<u64>() * (steps.end - steps.start)
 }
 
 /// How many of these bodies are stepped side by side.
