@@ -80,7 +80,7 @@ impl Name {
             "sideways" => ("friction sideways", NonNegative),
             "rate" => ("damping by mass c", NonNegative),
             "per_step" => ("damping a step λ", NonNegative),
-            "tilt" => ("tilt °", Finite),
+            "tilt" => ("tilt", Finite),
             "edges.stiffness" => ("stiffness k of edges", NonNegative),
             "edges.damping" => ("damping D of edges", NonNegative),
             "faces.stiffness" => ("stiffness k of faces", NonNegative),
