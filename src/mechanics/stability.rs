@@ -17,7 +17,7 @@ use crate::body::{MassDamping, ParticleId, Particles, SpineFriction, Spring, Spr
 
 use super::{BodyParts, rest_lengths};
 
-use lanczos::largest_eigenvalue;
+use lanczos::{FEW, MANY, largest_eigenvalue};
 
 /// Springs stretched so little are stiff along their lines alone, as far as a bound is concerned: k(1 − L/l) is below this part of k.
 const ALONG: f64 = 0.2;
@@ -149,7 +149,7 @@ pub(super) fn largest_bond_eigenvalue(bonds: impl Iterator<Item = BondLine>, mas
         Line { ends, direction, stiffness, damping: 0.0, across }
     };
     let lines: Vec<_> = bonds.map(line).collect();
-    largest_eigenvalue(&lines, &vec![1.0; masses], |line| (line.stiffness, line.across))
+    largest_eigenvalue(&lines, &vec![1.0; masses], MANY, |line| (line.stiffness, line.across))
 }
 
 fn lines(body: &BodyParts<'_>, time: f64) -> Vec<Line> {
@@ -187,13 +187,13 @@ fn rates_in_space(body: &BodyParts<'_>, lines: &[Line], across: bool) -> Rates {
         let directional = most(directional_rates(body));
         Rates { stiffness: node.stiffness.min(directional.stiffness), damping: node.damping.min(directional.damping) }
     };
-    let stiffness = largest_eigenvalue(lines, &inverse_mass, |line| (line.stiffness, line.across.max(0.0)));
+    let stiffness = largest_eigenvalue(lines, &inverse_mass, FEW, |line| (line.stiffness, line.across.max(0.0)));
     let damping = match (damping_law(body), ratios(body)) {
         // C = βK but for the stiffness across stretched springs, which K has more.
         (Damping::Proportional, [ratio, _]) if lines.iter().all(|line| line.across < ALONG * line.stiffness) => {
             ratio * stiffness
         }
-        _ => largest_eigenvalue(lines, &inverse_mass, |line| {
+        _ => largest_eigenvalue(lines, &inverse_mass, FEW, |line| {
             (line.damping, if line.direction == DVec3::ZERO { line.damping } else { 0.0 })
         }),
     };

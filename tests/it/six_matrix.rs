@@ -1,9 +1,10 @@
 //! The six-matrix particle system: its reference figures, and the laws that hold whatever the numbers.
 
 use bevy::math::DVec3;
+use faer::{Mat, Side};
 use wriggle::{
     body::{Drive, Particle, Particles, Rule},
-    creatures::{Composed, Inchworm, RoadForm, Roller, Rough, Shape, SixBody, Strip},
+    creatures::{Composed, Inchworm, RoadForm, Roller, Rough, Shape, SixBody, Strip, library},
     lab::limits::linearised_six_limit,
     mechanics::six_matrix::{
         Burst, Dense, Road, RoadSearch, Scan, SixParts, SixState, Stepper, bond_eigenvalue, look, stability_limit,
@@ -339,6 +340,32 @@ fn the_largest_step_is_that_of_the_bonds() {
         };
         assert!(run(fine) && !run(broken));
     }
+}
+
+#[test]
+fn the_eigenvalue_of_the_bonds_is_never_below_the_true_one() {
+    let mut seen = 0;
+    for (name, source) in library::list(library::CREATURE) {
+        let creature = library::read_creature(&source).unwrap();
+        let Some(composed) = creature.body.composed() else { continue };
+        let six = composed.build(&composed.rest()).unwrap();
+        let (bonds, count) = (&six.bonds, composed.rest().len());
+        let mut matrix = Mat::<f64>::zeros(3 * count, 3 * count);
+        for (i, j, _) in bonds.relation().pairs() {
+            let along = (bonds.rest()[j] - bonds.rest()[i]).normalize_or_zero().to_array();
+            for (a, b) in (0..3).flat_map(|a| (0..3).map(move |b| (a, b))) {
+                let k = 2.0 * bonds.stiffness() * along[a] * along[b];
+                for (row, column, sign) in [(i, i, 1.0), (j, j, 1.0), (i, j, -1.0), (j, i, -1.0)] {
+                    matrix[(3 * row + a, 3 * column + b)] += sign * k;
+                }
+            }
+        }
+        let exact = matrix.self_adjoint_eigenvalues(Side::Lower).unwrap().into_iter().fold(0.0, f64::max);
+        let found = bond_eigenvalue(bonds);
+        assert!(found >= exact * (1.0 - 1e-9) && found <= 1.02 * exact, "{name}: {found}, exactly {exact}");
+        seen += 1;
+    }
+    assert_eq!(seen, 4);
 }
 
 #[test]
