@@ -13,7 +13,7 @@ use super::{
     integrators::{Method, StickRule},
     lattice::LatticeRows,
     pull::PullRow,
-    strand::StrandRows,
+    strand::{StrandRows, in_space},
     tearing::TearingRows,
 };
 
@@ -380,14 +380,15 @@ impl<R: Real, const D: usize> Model<R, D> {
         let contact = Contact::new(body.ground, dt);
         // One dimension has no grid, and bodies side by side share no slabs.
         let lattice = if D == 3 && R::LANES == 1 { LatticeRows::of(body) } else { None };
-        let listed = if lattice.is_some() { 0 } else { body.springs.len() };
+        // A strand has the numbers of its springs in rows of its own.
+        let in_rows = body.strand.is_some() && body.tearing.is_none() && body.method.asks_forces_alone();
+        let listed = if lattice.is_some() || in_rows { 0 } else { body.springs.len() };
         Self {
             dt,
             inverse_mass: vec![zero; body.particles.len()],
             springs: body.springs.iter().take(listed).map(spring).collect(),
             muscles: body.muscles.into_iter().flat_map(Muscles::iter).map(MuscleRow::idle).collect(),
             strand: body.strand.map(|strand| StrandRows::idle(strand, body.waves)),
-            lattice,
             pull: PullRow::of(body),
             tearing: body.tearing.map(|_| TearingRows::idle(body.springs.len())),
             spine,
@@ -407,7 +408,8 @@ impl<R: Real, const D: usize> Model<R, D> {
             contact,
             damping: body.mass_damping.map(|_| DampingRow { rate: zero, loss: zero }),
             stick: body.stick,
-            rest: vec![zero; listed],
+            rest: vec![zero; if lattice.is_some() { 0 } else { body.springs.len() }],
+            lattice,
             overstretched: zero,
             evaluations: zero,
             refused: zero,
@@ -461,16 +463,27 @@ impl<R: Real, const D: usize> Model<R, D> {
         }
     }
 
+    /// The strand whose springs are not listed one by one.
+    #[inline(always)]
+    fn unlisted_strand(&self) -> Option<&StrandRows<R>> {
+        self.strand.as_ref().filter(|_| self.springs.is_empty())
+    }
+
     /// Notes springs that are too long, or of no finite length.
     #[inline(always)]
     pub(super) fn note_lengths(&mut self, state: &State<R, D>) {
         if self.lattice.is_some() {
             self.note_lattice(state);
         }
+        let mut too_long = self.overstretched;
+        if let (Some(rows), Some(position)) = (self.unlisted_strand(), in_space(&state.position)) {
+            too_long = rows.too_long(position).any(too_long);
+        }
         for spring in &self.springs {
             let [a, b] = spring.ends.map(|end| state.position[end as usize]);
-            self.overstretched = direction(a, b).0.if_below(spring.longest, self.overstretched, R::splat(1.0));
+            too_long = direction(a, b).0.if_below(spring.longest, too_long, R::splat(1.0));
         }
+        self.overstretched = too_long;
     }
 
     /// The body in one lane, alone.
@@ -564,15 +577,16 @@ impl<R: Real, const D: usize> Model<R, D> {
             let length = square.sqrt();
             length.is_nan() || length >= longest
         };
-        let (spring, ends) = match &self.lattice {
-            Some(rows) => {
-                let found = rows.springs().enumerate().find(|&(_, (ends, longest))| too_long(ends, longest));
-                found.map(|(spring, (ends, _))| (spring, ends))
-            }
-            None => {
-                let rows = self.springs.iter().map(|row| (row.ends.map(|end| end as usize), row.longest.lane(lane)));
-                let found = rows.enumerate().find(|&(_, (ends, longest))| too_long(ends, longest));
-                found.map(|(spring, (ends, _))| (spring, ends))
+        type Spring = ([usize; 2], f64);
+        let first = |springs: &mut dyn Iterator<Item = Spring>| {
+            springs.enumerate().find(|&(_, (ends, longest))| too_long(ends, longest)).map(|(i, (ends, _))| (i, ends))
+        };
+        let (spring, ends) = match (&self.lattice, self.unlisted_strand()) {
+            (Some(rows), _) => first(&mut rows.springs()),
+            (None, Some(rows)) => first(&mut rows.springs(lane)),
+            (None, None) => {
+                let listed = |row: &SpringRow<R>| (row.ends.map(|end| end as usize), row.longest.lane(lane));
+                first(&mut self.springs.iter().map(listed))
             }
         }?;
         let speed = |end: usize| state.velocity[end].iter().map(|v| v.lane(lane)).map(|v| v * v).sum::<f64>();
@@ -595,9 +609,11 @@ impl<R: Real, const D: usize> pulp::NullaryFnOnce for Note<'_, R, D> {
         let Self { model, state } = self;
         model.note_lengths(state);
         let (one, most) = (R::splat(1.0), R::splat(f64::MAX));
+        let mut lost = model.overstretched;
         for value in state.position.iter().chain(&state.velocity).flatten() {
-            model.overstretched = value.abs().if_below(most, model.overstretched, one);
+            lost = value.abs().if_below(most, lost, one);
         }
+        model.overstretched = lost;
     }
 }
 

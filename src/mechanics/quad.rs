@@ -100,7 +100,7 @@ impl<R: Real> Quad<R> {
     }
 
     #[inline(always)]
-    fn if_below(self, bound: Self, then: Self, otherwise: Self) -> Self {
+    pub(super) fn if_below(self, bound: Self, then: Self, otherwise: Self) -> Self {
         let ([a, b, c, d], [e, f, g, h]) = (self.0, bound.0);
         let ([i, j, k, l], [m, n, o, p]) = (then.0, otherwise.0);
         Self([a.if_below(e, i, m), b.if_below(f, j, n), c.if_below(g, k, o), d.if_below(h, l, p)])

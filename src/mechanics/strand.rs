@@ -1,7 +1,7 @@
 //! Forces of a strand: its waves, its rest lengths and its springs, four corners at a time.
 
 use crate::body::{
-    Epoch, LEAST_REST_FRACTION, Ramp, Strand, TravelingWave, TravelingWaves, Wave, WaveDirection, WaveKind,
+    Epoch, LEAST_REST_FRACTION, ParticleId, Ramp, Strand, TravelingWave, TravelingWaves, Wave, WaveDirection, WaveKind,
 };
 
 use super::{
@@ -240,6 +240,12 @@ impl<R: Real> StrandRows<R> {
         }
     }
 
+    /// The ends of every spring, and how long it must not become, in one lane.
+    pub(super) fn springs(&self, lane: usize) -> impl Iterator<Item = ([usize; 2], f64)> + '_ {
+        let ends = Strand::ends(self.strand.segments() as u32).map(|ends| ends.map(ParticleId::index));
+        ends.zip(self.longest.iter().map(move |longest| longest.lane(lane)))
+    }
+
     /// What drives each segment at `time`: the waves, once a segment.
     #[inline(always)]
     fn drive_segments(&mut self, time: f64) {
@@ -398,7 +404,7 @@ impl<R: Real> pulp::NullaryFnOnce for Forces<'_, R> {
 
 /// Vectors with three coordinates, which those of a strand always have.
 #[inline(always)]
-fn in_space<R, const D: usize>(vectors: &[[R; D]]) -> Option<&[[R; 3]]> {
+pub(super) fn in_space<R, const D: usize>(vectors: &[[R; D]]) -> Option<&[[R; 3]]> {
     (D == 3).then_some(vectors.as_flattened().as_chunks().0)
 }
 
@@ -425,6 +431,29 @@ impl<R: Real> StrandRows<R> {
     ) -> [Quad<R>; 3] {
         let (stiffness, damping) = (Quad::twice(&self.stiffness, first), Quad::twice(&self.damping, first));
         spring_force(a, b, stiffness, damping, Quad::twice(rest, first), Quad::twice(&self.longest, first), too_long)
+    }
+
+    /// Corner by corner, 1 where a spring is too long, or of no finite length, else 0.
+    #[inline(always)]
+    pub(super) fn too_long(&self, position: &[[R; 3]]) -> Quad<R> {
+        let (zero, one) = (Quad::splat(R::splat(0.0)), Quad::splat(R::splat(1.0)));
+        let mut found = zero;
+        let mut note = |a: &Point<R>, b: &Point<R>, longest: Quad<R>| {
+            found = a.length_to(b).if_below(longest, found, one);
+        };
+        for section in 0..self.strand.sections() {
+            let first = STRIDE * section;
+            let here = point(position, 4 * section);
+            note(&here, &here.next(), Quad::read(&self.longest, first));
+            note(&here, &here.opposite(), Quad::twice(&self.longest, first + SECTION_DIAGONALS));
+            if section < self.strand.segments() {
+                let next = point(position, 4 * section + 4);
+                note(&here, &next, Quad::read(&self.longest, first + AXIAL));
+                note(&here, &next.next(), Quad::read(&self.longest, first + RISING));
+                note(&here.next(), &next, Quad::read(&self.longest, first + FALLING));
+            }
+        }
+        found
     }
 
     /// The accelerations by all springs. Gives back, corner by corner, whether a spring was too long.
