@@ -217,6 +217,14 @@ impl Patch {
                 check(radius, Requirement::Positive, || format!("{path}.radius"))?;
                 ("center", [center.0, center.1, 0.0, 0.0])
             }
+            Self::Box { from, to, .. } if from.0 > to.0 || from.1 > to.1 => {
+                return Err(BodyError::Inconsistent {
+                    path: format!("{path}.to"),
+                    problem: format!(
+                        "{to:?} is not beyond from: {from:?}; give the least x and z as from, the largest as to"
+                    ),
+                });
+            }
             Self::Box { from, to, .. } => ("from", [from.0, from.1, to.0, to.1]),
         };
         values

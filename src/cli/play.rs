@@ -1,8 +1,11 @@
-//! `wriggle play`: a scene in a window, or the garden without one where nothing can be drawn.
+//! `wriggle play`: a scene in a window, or a run of it in the terminal where nothing can be drawn.
 
 use clap::Args;
 
-use super::{CliError, Outcome, headless_garden};
+use super::{
+    CliError, Outcome, headless_garden,
+    run::{RunArguments, run},
+};
 use crate::scenes;
 #[cfg(feature = "window")]
 use crate::{
@@ -19,9 +22,14 @@ pub(super) struct PlayArguments {
 }
 
 pub(super) fn play(arguments: &PlayArguments) -> Result<Outcome, CliError> {
-    let scene = scenes::load(arguments.scene.as_deref().unwrap_or("garden"))?;
+    let name = arguments.scene.as_deref().unwrap_or("garden");
+    let scene = scenes::load(name)?;
     match missing() {
-        Some(missing) => headless_garden(&missing),
+        Some(missing) if name == "garden" => headless_garden(&missing),
+        Some(missing) => {
+            eprintln!("{missing}; running {name} without a picture (`wriggle run --help` has more)");
+            run(&RunArguments::of(name))
+        }
         None => open_window(scene),
     }
 }

@@ -18,6 +18,7 @@ use super::{
 use crate::{
     body::Rules,
     mechanics::integrators::Method,
+    physics::body_parts,
     scenes::{self, parameters},
 };
 
@@ -28,7 +29,7 @@ const SIX_MATRIX: &str = "SixMatrix";
 /// More steps than anybody waits for.
 const MOST_STEPS: f64 = 1e12;
 
-#[derive(Args, Debug)]
+#[derive(Args, Debug, Default)]
 pub(super) struct RunArguments {
     /// A scene or creature by name, or a file (`*.scene.ron`, `*.creature.ron`)
     scene: String,
@@ -54,7 +55,7 @@ pub(super) struct RunArguments {
     #[arg(long)]
     json: bool,
     /// How many threads the bodies share [default: one a core]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(long, allow_negative_numbers = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
 }
 
@@ -64,6 +65,14 @@ pub(super) fn run(arguments: &RunArguments) -> Result<Outcome, CliError> {
         return Err(CliError::Usage(
             "--json and --record - would both write to standard output; record to a file".into(),
         ));
+    }
+    if let Some(place) = arguments.record.as_deref().filter(|place| place.ends_with(".ron")) {
+        return Err(CliError::Usage(format!(
+            "--record {place} would put a table where scenes and creatures are; give a name that ends in .csv"
+        )));
+    }
+    if arguments.dt.is_some() && arguments.set.iter().any(|(path, _)| path.starts_with("clock.")) {
+        return Err(CliError::Usage("--dt and --set clock.… would both give the step; give one of them".into()));
     }
     let mut scene = scenes::load(&arguments.scene)?;
     if let Some(method) = arguments.method {
@@ -86,6 +95,13 @@ pub(super) fn run(arguments: &RunArguments) -> Result<Outcome, CliError> {
     }
     for (path, value) in &arguments.set {
         parameters::set(run.world_mut(), path, *value)?;
+    }
+    for (name, body, _) in run.bodies() {
+        if let Some(reason) = body_parts(body).and_then(|body| body.refused_by_method()) {
+            return Err(CliError::Usage(format!(
+                "the method of `{name}` cannot step it: {reason}; give another method"
+            )));
+        }
     }
     let (steps, interval) = lengths(arguments, &run)?;
 
@@ -171,6 +187,13 @@ fn print(arguments: &RunArguments, to_stdout: bool, report: &Report) -> Result<(
 struct Record {
     place: String,
     out: Box<dyn Write>,
+}
+
+impl RunArguments {
+    /// A run of a scene as it is.
+    pub(super) fn of(scene: &str) -> Self {
+        Self { scene: scene.into(), ..Self::default() }
+    }
 }
 
 impl Record {

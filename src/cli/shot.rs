@@ -17,7 +17,7 @@ pub(super) struct ShotArguments {
     /// A scene or creature by name or file
     scene: String,
     /// When, in simulated time; a whole number of dt [default: the moment at which the scene opens, or 0]
-    #[arg(long, value_name = "T", value_parser = values::non_negative)]
+    #[arg(long, allow_negative_numbers = true, value_name = "T", value_parser = values::non_negative)]
     at: Option<f64>,
     /// Width and height in pixels
     #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = size)]

@@ -145,6 +145,13 @@ pub(super) fn step(
     }
 }
 
+/// Whether what is at this height is so far below all of the road that it has left it for good.
+fn is_below(road: &Road, height: f64) -> bool {
+    /// Higher than any creature.
+    const FAR: f64 = 100.0;
+    height + FAR < road.points().iter().map(|point| point.y).fold(f64::INFINITY, f64::min)
+}
+
 impl Item<'_> {
     /// Takes these steps, up to the last after which nothing had burst.
     fn advance(&mut self, timeline: Timeline, steps: &Range<u64>) {
@@ -157,6 +164,12 @@ impl Item<'_> {
             let reason = match burst.bond {
                 Some(bond) => format!("bond {bond} is longer than ten times its initial length"),
                 None => "it is not finite".into(),
+            };
+            let reason = match parts.road {
+                Some(road) if is_below(road, stepper.state().center().y) => {
+                    format!("it had fallen off its road, ever faster, until {reason}")
+                }
+                _ => reason,
             };
             let (step, time) = (step + 1, timeline.time_at(step + 1));
             let particle = ParticleId(burst.particle as u32);

@@ -100,9 +100,10 @@ pub fn load(name: &str) -> Result<LoadedScene, FileError> {
     let file = read_scene(&source)?;
     let mut read = HashMap::new();
     let mut creatures = Vec::with_capacity(file.creatures.len());
-    for placement in &file.creatures {
+    for (i, placement) in file.creatures.iter().enumerate() {
         if !read.contains_key(&placement.creature) {
-            let found = library::find(CREATURE, &placement.creature, source.folder())?;
+            let found = library::find(CREATURE, &placement.creature, source.folder())
+                .map_err(|error| named_in(&source, format!("creatures[{i}].creature"), error))?;
             let creature = Arc::new(library::read_creature(&found)?);
             read.insert(placement.creature.clone(), (found, creature));
         }
@@ -326,6 +327,17 @@ fn check_set(scene: &LoadedScene) -> Result<(), FileError> {
 pub(super) fn scene_conflict(scene: &LoadedScene, path: String, problem: String) -> FileError {
     let file = scene.source.to_string();
     FileError::Conflict { file, line: line_in(&scene.source, &path), path, problem }
+}
+
+/// That what a file names is nowhere, with the place where it names it.
+pub(super) fn named_in(source: &Source, path: String, error: FileError) -> FileError {
+    match error {
+        FileError::NotFound { .. } => {
+            let (file, line) = (source.to_string(), line_in(source, &path));
+            FileError::Conflict { file, line, path, problem: error.to_string() }
+        }
+        error => error,
+    }
 }
 
 /// What a body refuses, with the name of its file.

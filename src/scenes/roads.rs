@@ -2,7 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use super::{FileError, SceneFile, load::conflict};
+use super::{
+    FileError, SceneFile,
+    load::{conflict, named_in},
+};
 use crate::{
     creatures::{
         RoadForm,
@@ -19,12 +22,13 @@ impl Roads {
     /// Reads and builds every road that a scene names.
     pub(super) fn read(file: &SceneFile, scene: &Source) -> Result<Self, FileError> {
         let mut roads = Self::default();
-        let own = file.creatures.iter().filter_map(|placement| placement.road.as_ref());
-        for name in own.chain(&file.road) {
+        let own = file.creatures.iter().enumerate();
+        let own = own.filter_map(|(i, placement)| Some((format!("creatures[{i}].road"), placement.road.as_ref()?)));
+        for (path, name) in own.chain(file.road.iter().map(|road| ("road".into(), road))) {
             if roads.0.contains_key(name) {
                 continue;
             }
-            let source = library::find(ROAD, name, scene.folder())?;
+            let source = library::find(ROAD, name, scene.folder()).map_err(|error| named_in(scene, path, error))?;
             let form = library::read_road(&source)?.form;
             let road = form.build().map_err(|error| conflict(&source, error))?;
             roads.0.insert(name.clone(), (source, form, road));

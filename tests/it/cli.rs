@@ -120,6 +120,10 @@ fn bad_input_exits_with_2_and_says_what_is_right() {
         (&["run", "document", "--record", "-", "--json"], &["--json and --record -"]),
         (&["run", "document", "--for", "1", "--record", "/nowhere/r.csv"], &["/nowhere/r.csv"]),
         (&["run", "document", "--threads", "0"], &["--threads"]),
+        (&["run", "document", "--threads", "-1"], &["--threads", "-1 is not in 1..=1024"]),
+        (&["run", "document", "--dt", "0.1", "--set", "clock.dt=0.2"], &["--dt and --set clock.", "give one of them"]),
+        (&["run", "snake", "--method", "ExactFlow"], &["`snake` cannot", "not on an axis", "give another method"]),
+        (&["run", "document", "--record", "my.creature.ron"], &["my.creature.ron", "ends in .csv"]),
         (&["run", "gardn"], &["no scene `gardn`", "did you mean garden?", "assets/scenes/gardn.scene.ron"]),
         (&["run", "nowhere.creature.ron"], &["no creature `nowhere.creature.ron`"]),
         (&["run"], &["SCENE"]),
@@ -221,6 +225,23 @@ fn play_without_a_display_runs_the_garden_headless() {
     assert_eq!(stderr(&output).lines().count(), 1, "{}", stderr(&output));
     let said = stdout(&output);
     assert!(said.contains("t =  0.0") && said.contains("t = 60.0") && said.contains("before its door"), "{said}");
+}
+
+#[test]
+fn what_is_asked_for_runs_where_nothing_can_be_drawn() {
+    let output = Command::new(env!("CARGO_BIN_EXE_wriggle"))
+        .arg("two-masses")
+        .env_remove("DISPLAY")
+        .env_remove("WAYLAND_DISPLAY")
+        .env_remove("WAYLAND_SOCKET")
+        .output()
+        .unwrap();
+    if cfg!(all(feature = "window", not(all(unix, not(target_os = "macos"))))) {
+        return;
+    }
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert!(stderr(&output).contains("running two-masses without a picture"), "{}", stderr(&output));
+    assert!(stdout(&output).contains("two-masses"), "{}", stdout(&output));
 }
 
 #[test]

@@ -203,3 +203,10 @@ fn a_terrain_without_a_surface_is_none() {
     let error = Terrain::new([Surface::Ball { center: (0.0, 0.0, 0.0), radius: -1.0 }]).unwrap_err().to_string();
     assert!(error.starts_with("surfaces[0].radius: -1 is not allowed"), "{error}");
 }
+
+#[test]
+fn a_patch_whose_ends_are_the_wrong_way_round_covers_nothing_and_is_refused() {
+    let floor = Terrain::new([Surface::Floor { height: 0.0 }]).unwrap();
+    let error = floor.with_patches([Patch::Box { from: (1.0, 0.0), to: (2.0, -1.0), grip: 1.0 }]).unwrap_err();
+    assert!(error.to_string().starts_with("patches[0].to: (2.0, -1.0) is not beyond from"), "{error}");
+}

@@ -412,6 +412,22 @@ fn an_animal_inside_the_ground_is_refused() {
 }
 
 #[test]
+fn what_a_scene_names_and_is_nowhere_is_reported_with_its_place() {
+    let problem = scene_problem(SCENE_TEXT.replacen("garden-worm", "garden-wurm", 1));
+    let line = 1 + SCENE_TEXT.lines().position(|line| line.contains("garden-worm")).unwrap();
+    assert_says(
+        &problem,
+        &[
+            &format!(".scene.ron:{line}: creatures[0].creature: there is no creature `garden-wurm`"),
+            "did you mean garden-worm?",
+        ],
+    );
+    let road =
+        "Scene(version: 1, title: \"t\",\n  road: \"nowhere\",\n  creatures: [(name: \"a\", creature: \"roller\")])";
+    assert_says(&scene_problem(road), &[".scene.ron:2: road: there is no road `nowhere`"]);
+}
+
+#[test]
 fn creatures_are_looked_for_beside_their_scene_first() {
     let (folder, path) = file("my.scene.ron", SCENE_TEXT);
     let worm = folder.path().join("garden-worm.creature.ron");

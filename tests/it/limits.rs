@@ -2,7 +2,7 @@
 
 use bevy::math::DVec3;
 use wriggle::{
-    body::{MassDamping, Particle, ParticleId, Particles, Spring, Springs},
+    body::{MassDamping, Particle, ParticleId, Particles, Spring, Springs, Tearing},
     lab::{
         Problem,
         limits::{growth, limits, linearised_limit, predicted_limit, scene_limit},
@@ -337,6 +337,20 @@ fn assert_known(name: &str, body: &BodyParts<'_>) {
     assert!(near, "{name}, {method:?}: predicted {predicted}, found {linearised}");
     let is_bound = bound <= predicted && bound >= 0.5 * linearised;
     assert!(is_bound, "{name}, {method:?}: bound {bound}, found {linearised}");
+}
+
+#[test]
+fn what_is_torn_and_flies_apart_has_not_exploded() {
+    // Two masses that leave each other with half of the energy that their spring would hold squeezed to no length.
+    let mass = |x: f64| Particle { velocity: DVec3::X * (x - 0.5), ..Particle::at(DVec3::X * x) };
+    let particles = Particles::new([mass(0.0), mass(1.0)]).unwrap();
+    let spring = Spring { ends: [ParticleId(0), ParticleId(1)], stiffness: 1.0, damping: 0.0, rest_length: 1.0 };
+    let springs = Springs::new([spring], &particles).unwrap();
+    let tearing = Tearing::new(0.1).unwrap();
+    let whole = BodyParts::new(&particles, &springs, Method::SemiImplicitEuler);
+    let linearised = linearised_limit(&whole).unwrap();
+    assert_eq!(scene_limit(&BodyParts { tearing: Some(&tearing), ..whole }, linearised), Some(f64::INFINITY));
+    assert!(scene_limit(&whole, linearised).unwrap().is_finite());
 }
 
 #[test]

@@ -84,6 +84,7 @@ pub(super) fn reason(body: &BodyParts<'_>, linearised: f64, explodes: f64) -> &'
                     false => "it falls and strikes the ground, which is no small disturbance",
                 }
             }
+            _ if period(body).is_none() => "it moves into poses and speeds that a small disturbance does not reach",
             _ => "muscles drive it into poses and speeds that a small disturbance does not reach",
         };
     }
@@ -113,7 +114,7 @@ fn run_in<const D: usize>(body: &BodyParts<'_>, dt: f64) -> Outcome {
     let mut model = Model::<f64, D>::new(body, [], dt);
     let mut state = State::<f64, D>::new(body.particles.len());
     state.set_lane(0, body.particles);
-    let mut particles = body.particles.clone();
+    let (mut particles, mut tearing) = (body.particles.clone(), body.tearing.cloned());
     let directions = directions(body, &particles);
     let most_energy = squeezed(body);
     let timeline = Timeline { dt, base_step: 0, base_time: 0.0 };
@@ -127,7 +128,12 @@ fn run_in<const D: usize>(body: &BodyParts<'_>, dt: f64) -> Outcome {
             break;
         }
         state.write_lane(0, &mut particles);
-        let now = BodyParts { particles: &particles, ..*body };
+        if let Some(tearing) = &mut tearing {
+            // What is too long now tears where the next step begins, and holds nothing.
+            model.begin_step(&state);
+            tearing.set_torn(model.torn(0));
+        }
+        let now = BodyParts { particles: &particles, tearing: tearing.as_ref(), ..*body };
         outcome.flipped |= directions.iter().zip(self::directions(&now, &particles)).any(|(a, b)| a.dot(b) < 0.0);
         if energy(&now, timeline.time_at(step + 1)) > most_energy {
             outcome.exploded = true;

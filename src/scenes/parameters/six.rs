@@ -80,10 +80,10 @@ impl SixQuantity {
             Self::Friction => (
                 DRIVE,
                 "friction",
-                Finite,
+                NonNegative,
                 (0.02, 0.5),
                 "1/step",
-                "road friction: decides whether wheels make the curves",
+                "road friction: how much of the curves wheels make",
             ),
             Self::Speed => (DRIVE, "speed", Finite, (0.0, 40.0), "length/time", "desired momentum of a wheel"),
             Self::Mean => {
