@@ -7,6 +7,7 @@ use crate::physics::Clock;
 /// Finds the first thing that does nothing.
 pub(super) fn check(scene: &LoadedScene) -> Result<(), FileError> {
     check_moment(scene)?;
+    check_places(scene)?;
     let six: Vec<_> = scene.creatures.iter().map(|(_, creature)| creature.body.composed().is_some()).collect();
     for (i, (placement, six)) in scene.file.creatures.iter().zip(&six).enumerate() {
         let name = &placement.name;
@@ -32,6 +33,23 @@ pub(super) fn check(scene: &LoadedScene) -> Result<(), FileError> {
         }
     }
     check_common(scene, &six)
+}
+
+/// Creatures must stand where numbers still tell the lengths of their springs.
+fn check_places(scene: &LoadedScene) -> Result<(), FileError> {
+    /// From here on, a position has fewer than seven decimals.
+    const FARTHEST: f64 = 1e9;
+    for (i, placement) in scene.file.creatures.iter().enumerate() {
+        let (x, y, z) = placement.at;
+        if let Some(far) = [x, y, z].into_iter().find(|coordinate| coordinate.abs() > FARTHEST) {
+            let problem = format!(
+                "{far:e} is too far away for the springs of `{}`; give {FARTHEST:e} at the most",
+                placement.name
+            );
+            return Err(scene_conflict(scene, format!("creatures[{i}].at"), problem));
+        }
+    }
+    Ok(())
 }
 
 /// What the scene gives to all of its creatures must be for one of them at least.

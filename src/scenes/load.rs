@@ -92,8 +92,13 @@ pub fn load(name: &str) -> Result<LoadedScene, FileError> {
         return load_creature(name);
     }
     let source = match library::find(SCENE, name, None) {
-        Err(error @ FileError::NotFound { .. }) => {
-            return if library::find(CREATURE, name, None).is_ok() { load_creature(name) } else { Err(error) };
+        Err(FileError::NotFound { what, name: asked, places, mut near }) => {
+            match library::find(CREATURE, name, None) {
+                Ok(_) => return load_creature(name),
+                Err(FileError::NotFound { near: creatures, .. }) => near.extend(creatures),
+                Err(_) => {}
+            }
+            return Err(FileError::NotFound { what, name: asked, places, near });
         }
         source => source?,
     };

@@ -125,6 +125,7 @@ fn bad_input_exits_with_2_and_says_what_is_right() {
         (&["run", "snake", "--method", "ExactFlow"], &["`snake` cannot", "not on an axis", "give another method"]),
         (&["run", "document", "--record", "my.creature.ron"], &["my.creature.ron", "ends in .csv"]),
         (&["run", "gardn"], &["no scene `gardn`", "did you mean garden?", "assets/scenes/gardn.scene.ron"]),
+        (&["run", "snak"], &["no scene `snak`", "did you mean snake"]),
         (&["run", "nowhere.creature.ron"], &["no creature `nowhere.creature.ron`"]),
         (&["run"], &["SCENE"]),
         (&["list", "--paths", "gardn"], &["did you mean garden?"]),

@@ -422,6 +422,8 @@ fn what_a_scene_names_and_is_nowhere_is_reported_with_its_place() {
             "did you mean garden-worm?",
         ],
     );
+    let far = scene_problem(SCENE_TEXT.replacen("at: (0, 0, 0)", "at: (0, 0, -1e308)", 1));
+    assert_says(&far, &[".scene.ron:2: creatures[0].at: -1e308 is too far away", "1e9 at the most"]);
     let road =
         "Scene(version: 1, title: \"t\",\n  road: \"nowhere\",\n  creatures: [(name: \"a\", creature: \"roller\")])";
     assert_says(&scene_problem(road), &[".scene.ron:2: road: there is no road `nowhere`"]);
