@@ -152,6 +152,14 @@ pub(super) fn largest_bond_eigenvalue(bonds: impl Iterator<Item = BondLine>, mas
     largest_eigenvalue(&lines, &vec![1.0; masses], MANY, |line| (line.stiffness, line.across))
 }
 
+/// 1 − L/l, and 0 where that is no more than the rounding errors of a body that was turned: stiffness without damping, however little, is none that
+/// explicit Euler can step.
+fn stretch(length: f64, rest: f64) -> f64 {
+    const ROUNDING: f64 = 1e-12;
+    let stretch = 1.0 - rest / length;
+    if stretch.abs() < ROUNDING { 0.0 } else { stretch }
+}
+
 fn lines(body: &BodyParts<'_>, time: f64) -> Vec<Line> {
     let line = |(spring, rest): (Spring, f64)| {
         let difference = difference(body.particles, spring.ends);
@@ -162,7 +170,7 @@ fn lines(body: &BodyParts<'_>, time: f64) -> Vec<Line> {
             stiffness: spring.stiffness,
             damping: spring.damping,
             // A spring of no length has a direction only once it moves: any.
-            across: if length > 0.0 { spring.stiffness * (1.0 - rest / length) } else { spring.stiffness },
+            across: if length > 0.0 { spring.stiffness * stretch(length, rest) } else { spring.stiffness },
         }
     };
     let torn = |i: usize| body.tearing.is_some_and(|tearing| tearing.is_torn(SpringId(i as u32)));

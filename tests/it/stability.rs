@@ -3,6 +3,10 @@
 use bevy::math::DVec3;
 use wriggle::{
     body::{Gravity, Particle, ParticleId, Particles, Spring, Springs},
+    creatures::{
+        Pose,
+        library::{self, CREATURE},
+    },
     mechanics::{BodyParts, integrators::Method},
     physics::Plan,
 };
@@ -54,6 +58,22 @@ fn true_limit(method: Method, modes: &[(f64, f64)]) -> f64 {
 fn assert_bounds(predicted: f64, truth: f64, what: &str) {
     assert!(predicted <= truth * (1.0 + 1e-9), "{what}: predicted {predicted} is above the true limit {truth}");
     assert!(predicted >= 0.5 * truth, "{what}: predicted {predicted} is less than half of the true limit {truth}");
+}
+
+#[test]
+fn a_body_that_is_turned_keeps_its_bound() {
+    let snake = library::read_creature(&library::find(CREATURE, "snake", None).unwrap()).unwrap();
+    let limit = |heading: f64, method| {
+        let body = snake.body(Pose { heading, ..Pose::default() }).unwrap();
+        BodyParts { strand: body.strand, ..BodyParts::new(&body.particles, &body.springs, method) }.stability_limit(0.0)
+    };
+    for method in [Method::ExplicitEuler, Method::SemiImplicitEuler, Method::RungeKutta2, Method::RungeKutta4] {
+        let straight = limit(0.0, method);
+        for heading in [-40.0, 17.0, 123.0] {
+            let turned = limit(heading, method);
+            assert!((turned / straight - 1.0).abs() < 0.02, "{method:?} at {heading}°: {turned}, straight {straight}");
+        }
+    }
 }
 
 #[test]
