@@ -80,15 +80,15 @@ impl<R: Real, const D: usize> Model<R, D> {
 
     /// Contact without bounce.
     fn stop(&self, start: [R; D], end: [R; D], mut v: [R; D], depth: R) -> ([R; D], [R; D]) {
-        let zero = R::splat(0.0);
+        let (zero, one) = (R::splat(0.0), R::splat(1.0));
         let (part, mut x, normal) = self.crossing(start, end, depth);
         let inward = dot(v, normal);
         subtract(&mut v, normal, inward.if_below(zero, inward, zero));
-        let rest = (R::splat(1.0) - part) * R::splat(self.dt);
+        let rest = (one - part) * R::splat(self.dt);
         for axis in 0..D {
             x[axis] += rest * v[axis];
         }
-        self.push_out(&mut x);
+        self.push_out(&mut x, &mut v, normal, one);
         (x, v)
     }
 
@@ -98,7 +98,11 @@ impl<R: Real, const D: usize> Model<R, D> {
     /// positions); the difference is left to the mass, so that it rises as it fell.
     fn bounce(&self, start: [R; D], end: [R; D], mut v: [R; D], depth: R) -> ([R; D], [R; D]) {
         let (zero, half, dt) = (R::splat(0.0), R::splat(0.5), R::splat(self.dt));
-        let (part, _, normal) = self.crossing(start, end, depth);
+        let (part, at, normal) = self.crossing(start, end, depth);
+        let mut way = end;
+        subtract(&mut way, at, R::splat(1.0));
+        // In a corner what the step ends below most deeply need not be what it met.
+        let depth = dot(way, normal);
         let height = self.contact.distance(start).0;
         let height = zero.if_below(height, height, zero);
         let weight = self.gravity.map_or(zero, |gravity| gravity * normal[1]);
@@ -116,16 +120,31 @@ impl<R: Real, const D: usize> Model<R, D> {
         let up_speed = zero.if_below(up, leaving - weight * left + kept, zero);
         let up = zero.if_below(up, up, zero);
         let mut x = end;
-        subtract(&mut x, normal, depth - up);
+        subtract(&mut x, normal, depth.if_below(zero, depth - up, zero));
         let inward = dot(v, normal);
-        subtract(&mut v, normal, inward - up_speed);
-        self.push_out(&mut x);
+        subtract(&mut v, normal, depth.if_below(zero, inward - up_speed, zero));
+        self.push_out(&mut x, &mut v, normal, R::splat(1.0 + self.contact.bounce));
         (x, v)
     }
 
-    fn push_out(&self, x: &mut [R; D]) {
+    /// Puts what is still below the ground, after it met the surface of this normal, on what it is below.
+    ///
+    /// If that is another surface, steeply to the first as a wall on a floor (no one surface turns so far within a step), the mass has met it too, and `loses`
+    /// times what of its velocity leads inwards: else a mass that rests in the corner would gather speed into the wall for ever. As many surfaces meet
+    /// in a corner as there are axes.
+    fn push_out(&self, x: &mut [R; D], v: &mut [R; D], mut met: [R; D], loses: R) {
         let zero = R::splat(0.0);
-        let (distance, normal) = self.contact.distance(*x);
-        subtract(x, normal, distance.if_below(zero, distance, zero));
+        for _ in 1..D {
+            let (distance, normal) = self.contact.distance(*x);
+            subtract(x, normal, distance.if_below(zero, distance, zero));
+            let inward = dot(*v, normal);
+            let inward = inward.if_below(zero, inward, zero);
+            let inward = distance.if_below(zero, dot(met, normal).if_below(R::splat(0.5), inward, zero), zero);
+            if !inward.any_below(zero) {
+                break;
+            }
+            subtract(v, normal, loses * inward);
+            met = normal;
+        }
     }
 }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use bevy::{math::DVec3, prelude::*};
 use wriggle::{
-    body::{Gravity, Ground, Particle, ParticleId, Particles, Patch, SpineFriction, Springs, Surface, Terrain},
+    body::{Gravity, Ground, Particle, ParticleId, Particles, Patch, SpineFriction, Spring, Springs, Surface, Terrain},
     mechanics::{ground_distance, integrators::Method},
 };
 
@@ -193,6 +193,56 @@ fn patches_change_the_side_grip_of_what_stands_on_them_alone() {
     let across: Vec<_> = particles(&app, body).velocities().map(|v| v.z).collect();
     for (is, rate) in across.into_iter().zip([2.0, 1.0, 5.0, 0.0]) {
         assert!((is - libm::exp(-0.01 * rate)).abs() < 1e-3 * 0.01, "{is} at the rate {rate}");
+    }
+}
+
+/// A floor with two walls that face −x and −z through (1, 0, 1).
+fn corner(bounce: f64) -> Ground {
+    let wall = |normal| Surface::Plane { point: (1.0, 0.0, 1.0), normal };
+    terrain([Surface::Floor { height: 0.0 }, wall((-1.0, 0.0, 0.0)), wall((0.0, 0.0, -1.0))], bounce)
+}
+
+#[test]
+fn in_a_corner_of_floor_and_walls_no_speed_adds_up() {
+    // A spring pushes one mass into the corner; the other is pinned.
+    for (bounce, most) in [(0.0, 0.0), (0.5, 0.01)] {
+        for place in [DVec3::X, DVec3::X + DVec3::Z] {
+            let pinned = Particle { pinned: true, ..Particle::at(place * 0.5) };
+            let masses = Particles::new([pinned, Particle::at(place)]).unwrap();
+            let ends = [ParticleId(0), ParticleId(1)];
+            let spring = Spring { ends, stiffness: 1.0, damping: 0.0, rest_length: 1.5 };
+            let springs = Springs::new([spring], &masses).unwrap();
+            let mut app = stepping_app(0.01, 1);
+            let body = app.world_mut().spawn((masses, springs, Gravity::new(0.02).unwrap(), corner(bounce))).id();
+            for _ in 0..200 {
+                app.update();
+                let masses = particles(&app, body);
+                let (x, v) = (masses.position(ParticleId(1)).unwrap(), masses.velocity(ParticleId(1)).unwrap());
+                assert!((x - place).length() <= 0.01 * most, "at {x} for {place}");
+                assert!(v.length() <= most, "{v} at {place}");
+            }
+        }
+    }
+}
+
+#[test]
+fn in_a_corner_a_mass_loses_what_leads_into_each_surface_and_no_more() {
+    for (velocity, expected) in [
+        (DVec3::new(1.0, -2.0, 0.3), DVec3::new(0.0, 0.0, 0.3)),
+        (DVec3::new(2.0, -1.0, 0.3), DVec3::new(0.0, 0.0, 0.3)),
+        (DVec3::new(2.0, 1.0, 0.3), DVec3::new(0.0, 1.0, 0.3)),
+        (DVec3::new(-2.0, -1.0, 0.3), DVec3::new(-2.0, 0.0, 0.3)),
+        (DVec3::new(-2.0, 1.0, -0.3), DVec3::new(-2.0, 1.0, -0.3)),
+    ] {
+        for bounce in [0.0, 0.5] {
+            let mut app = stepping_app(0.01, 1);
+            let ball = throw(&mut app, DVec3::X, velocity, 0.0, corner(bounce), Method::SemiImplicitEuler);
+            app.update();
+            let expected = expected - bounce * (velocity - expected);
+            let ball = mass(&app, ball);
+            assert!((ball.velocity - expected).length() < 1e-12, "{} for {expected} from {velocity}", ball.velocity);
+            assert!(ball.position.y >= 0.0 && ball.position.x <= 1.0, "{} from {velocity}", ball.position);
+        }
     }
 }
 
