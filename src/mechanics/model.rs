@@ -329,7 +329,7 @@ pub struct Model<R, const D: usize> {
     pub(super) rest: Vec<R>,
     /// 1 in the lanes where an evaluation met a spring longer than its longest, or of no finite length; else 0.
     pub(super) overstretched: R,
-    /// How often the forces of the whole body were evaluated since the model was made.
+    /// How often the forces of the whole body were evaluated since the tick began.
     pub(super) evaluations: R,
     /// 1 in the lanes of bodies for which the method could not take a step; else 0.
     pub(super) refused: R,
@@ -358,6 +358,12 @@ impl<R: Real, const D: usize> Model<R, D> {
             model.set_lane(lane, &others.next().unwrap_or(*first));
         }
         model
+    }
+
+    /// Forgets what was noted and counted in the steps before, of a model that steps a body again.
+    pub fn begin_tick(&mut self) {
+        let zero = R::splat(0.0);
+        (self.overstretched, self.evaluations, self.refused) = (zero, zero, zero);
     }
 
     /// The topology of `body`, without its numbers.
@@ -547,7 +553,7 @@ impl<R: Real, const D: usize> Model<R, D> {
         pulp::Arch::new().dispatch(Note { model: self, state });
     }
 
-    /// Whether any evaluation since the model was made met, in this lane, a spring longer than ten rest lengths or of no finite length.
+    /// Whether any evaluation since the model was made, or [its tick began](Self::begin_tick), met, in this lane, a spring longer than ten rest lengths or of no finite length.
     pub fn has_exploded(&self, lane: usize) -> bool {
         self.overstretched.lane(lane) != 0.0
     }
@@ -557,7 +563,7 @@ impl<R: Real, const D: usize> Model<R, D> {
         self.refused.lane(lane) != 0.0
     }
 
-    /// How often the forces of the body in this lane were evaluated since the model was made.
+    /// How often the forces of the body in this lane were evaluated since the model was made, or [its tick began](Self::begin_tick).
     pub fn evaluations(&self, lane: usize) -> u64 {
         self.evaluations.lane(lane) as u64
     }

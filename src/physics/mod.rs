@@ -16,6 +16,7 @@
 //! Pausing is Bevy's `Time<Virtual>::pause`; a paused app takes exactly one tick after `Time<Fixed>::accumulate_overstep(timestep)`.
 
 mod clock;
+mod layout;
 mod plan;
 mod restart;
 mod six;

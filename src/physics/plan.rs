@@ -131,7 +131,8 @@ const STEPS_PER_LIMIT: u64 = 1024;
 /// For a large body, which steps faster than its limit is found, after one step for so many springs.
 const SPRINGS_A_STEP: u64 = 64;
 
-type Changes = Or<(
+/// A body that is not as it was planned.
+pub(super) type Changes = Or<(
     Added<Plan>,
     // Steps move particles without marking them as changed, so this tells of edits by others.
     Changed<Particles>,
