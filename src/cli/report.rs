@@ -66,6 +66,9 @@ struct BodyReport {
     center: [f64; 3],
     distance: f64,
     status: &'static str,
+    /// What it was frozen for, if it was.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    frozen: Option<FrozenReport>,
     /// Its gait over its last cycles, where it is a strand with waves.
     #[serde(skip_serializing_if = "Option::is_none")]
     gait: Option<GaitMetrics>,
@@ -75,6 +78,15 @@ struct BodyReport {
     /// How many of its springs are torn, where they can tear.
     #[serde(skip_serializing_if = "Option::is_none")]
     torn: Option<usize>,
+}
+
+/// The step that a body did not survive; its state is that of the step before.
+#[derive(Debug, Serialize)]
+struct FrozenReport {
+    step: u64,
+    time: f64,
+    particle: u32,
+    reason: String,
 }
 
 impl Report {
@@ -92,6 +104,7 @@ impl Report {
                 center: start,
                 distance: 0.0,
                 status: "running",
+                frozen: None,
                 gait: None,
                 block: None,
                 torn: None,
@@ -144,6 +157,12 @@ impl Report {
             report.torn = body.get::<Tearing>().map(Tearing::count);
             report.gait = gait.as_ref().and_then(Gait::measure);
             report.status = if body.contains::<Frozen>() { "frozen" } else { "running" };
+            report.frozen = body.get::<Frozen>().map(|frozen| FrozenReport {
+                step: frozen.step,
+                time: frozen.time,
+                particle: frozen.particle.0,
+                reason: frozen.reason.clone(),
+            });
         }
     }
 }

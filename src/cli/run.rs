@@ -24,7 +24,7 @@ use crate::{
 
 /// What is run where `--for` does not say how long.
 const DEFAULT_TIME: f64 = 60.0;
-/// What moves a scene without springs.
+/// What moves a scene of creatures without springs.
 const SIX_MATRIX: &str = "SixMatrix";
 /// More steps than anybody waits for.
 const MOST_STEPS: f64 = 1e12;
@@ -83,13 +83,13 @@ pub(super) fn run(arguments: &RunArguments) -> Result<Outcome, CliError> {
     }
     let (name, method) = (scene.source.stem(), scene.file.method);
     let mut run = Headless::new(scene, arguments.threads.map(usize::from))?;
-    let has_springs = run.bodies().any(|(_, body, _)| !body.contains::<Rules>());
-    if arguments.method.is_some() && !has_springs {
+    let only_six = run.bodies().next().is_some() && run.bodies().all(|(_, body, _)| body.contains::<Rules>());
+    if arguments.method.is_some() && only_six {
         return Err(CliError::Usage(
             "--method is for bodies with springs; those of this scene move by the six-matrix particle system".into(),
         ));
     }
-    let method = if has_springs { method.name() } else { SIX_MATRIX };
+    let method = if only_six { SIX_MATRIX } else { method.name() };
     if let Some(dt) = arguments.dt {
         parameters::set(run.world_mut(), "clock.dt", dt)?;
     }

@@ -150,7 +150,8 @@ impl Creature {
             }
             Plan::Jelly(jelly) => {
                 if let Some(field) = self.friction.map(|_| "friction").or_else(|| self.coulomb.map(|_| "coulomb")) {
-                    return Err(no_spine(field));
+                    let problem = "works along a spine, and a block has none; leave it out";
+                    return Err(BodyError::Inconsistent { path: field.into(), problem: problem.into() });
                 }
                 return Ok(Body { damping, tearing, look: self.look(), ..jelly.body(pose)? });
             }
@@ -164,6 +165,11 @@ impl Creature {
             Plan::Strand(_) if tearing.is_some() => {
                 let problem = "the springs of a strand cannot tear; leave it out".into();
                 return Err(BodyError::Inconsistent { path: "tear".into(), problem });
+            }
+            Plan::Strand(_) if self.coulomb.is_some() => {
+                let problem =
+                    "works along single particles, and the spine of a strand has sections of four; give friction";
+                return Err(BodyError::Inconsistent { path: "coulomb".into(), problem: problem.into() });
             }
             Plan::Strand(plan) => (Some(plan.strand(&springs)?), Some(plan.waves()?)),
             _ => (None, None),

@@ -12,8 +12,12 @@ use super::parse::options;
 /// The line, counted from 1, of the field at `path`, such as `creatures[1].road`; where there is no such field, that of the innermost one around it. Nothing where
 /// not even the first part of the path is there. Kinds such as `Raw` in `body: Raw(…)` are no part of a path.
 pub(crate) fn line_of(text: &str, path: &str) -> Option<usize> {
-    let parts: Vec<_> = path.split(['.', '[', ']']).filter(|part| !part.is_empty()).collect();
+    let parts: Vec<_> = parts(path).collect();
     (1..=parts.len()).rev().find_map(|depth| line(text, &parts[..depth]))
+}
+
+fn parts(path: &str) -> impl Iterator<Item = &str> {
+    path.split(['.', '[', ']']).filter(|part| !part.is_empty())
 }
 
 /// Reads up to a value and stops there with an error, of which only the place is wanted.
@@ -53,6 +57,9 @@ impl<'de> Visitor<'de> for Walk<'_> {
             if name == *first {
                 return map.next_value_seed(Walk(rest));
             }
+            if parts(&name).eq(self.0.iter().copied()) {
+                return map.next_value_seed(Walk(&[]));
+            }
             map.next_value::<IgnoredAny>()?;
         }
         Ok(())
@@ -87,6 +94,6 @@ impl<'de> serde::Deserialize<'de> for Name {
                 Ok(Name(name.to_owned()))
             }
         }
-        deserializer.deserialize_identifier(Read)
+        deserializer.deserialize_str(Read)
     }
 }

@@ -38,6 +38,12 @@ number!(Finite, finite, optional_finite);
 number!(Positive, positive, optional_positive);
 number!(NonNegative, non_negative, optional_non_negative);
 
+/// Two finite numbers.
+pub(crate) fn pair<'de, D: Deserializer<'de>>(deserializer: D) -> Result<(f64, f64), D::Error> {
+    let (x, z) = <(Finite, Finite)>::deserialize(deserializer)?;
+    Ok((x.0, z.0))
+}
+
 /// Three finite numbers.
 pub(crate) fn vector<'de, D: Deserializer<'de>>(deserializer: D) -> Result<(f64, f64, f64), D::Error> {
     let (x, y, z) = <(Finite, Finite, Finite)>::deserialize(deserializer)?;

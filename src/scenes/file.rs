@@ -1,5 +1,6 @@
 //! A scene file as data.
 
+use core::fmt;
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Deserializer, Serialize, de};
@@ -60,7 +61,7 @@ pub struct SceneFile {
     #[serde(default)]
     pub budget: Budget,
     /// Parameters that differ from those of its creatures, by path, such as `"worm.springs.stiffness": 2`. Left out: none.
-    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty", deserialize_with = "each_once")]
     pub set: BTreeMap<String, f64>,
 }
 
@@ -136,6 +137,7 @@ pub struct OnRoad {
 
 /// What stands around.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub enum Props {
     /// Nothing.
     #[default]
@@ -177,6 +179,7 @@ impl Default for Camera {
 
 /// How much error a scene can afford.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub enum Budget {
     /// As many pixels on a screen that shows it from where its camera starts, above zero.
     Pixels(#[serde(deserialize_with = "numbers::positive")] f64),
@@ -319,4 +322,30 @@ fn substeps<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<u32>, D
         Some(0) => Err(de::Error::custom("0 is not allowed; give a whole number above 0")),
         substeps => Ok(substeps),
     }
+}
+
+/// A map in which no key stands twice: one of the two values would be lost.
+fn each_once<'de, D: Deserializer<'de>>(deserializer: D) -> Result<BTreeMap<String, f64>, D::Error> {
+    struct EachOnce;
+
+    impl<'de> de::Visitor<'de> for EachOnce {
+        type Value = BTreeMap<String, f64>;
+
+        fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+            f.write_str("a map of parameters and numbers")
+        }
+
+        fn visit_map<A: de::MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
+            let mut found = BTreeMap::new();
+            while let Some((key, value)) = map.next_entry::<String, f64>()? {
+                if found.contains_key(&key) {
+                    return Err(de::Error::custom(format_args!("`{key}` is given twice; give it once")));
+                }
+                found.insert(key, value);
+            }
+            Ok(found)
+        }
+    }
+
+    deserializer.deserialize_map(EachOnce)
 }

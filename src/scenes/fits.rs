@@ -22,8 +22,15 @@ pub(super) fn check(scene: &LoadedScene) -> Result<(), FileError> {
         if !six && placement.on_road.is_some() {
             return wrong("on_road", format!("`{name}` has springs, which know no road; give `at` instead"));
         }
-        if placement.on_road.is_some() && scene.road_of(placement).is_none() {
-            return wrong("on_road", format!("`{name}` has no road to stand on; give road: \"NAME\""));
+        match (placement.on_road, scene.road_of(placement)) {
+            (Some(_), None) => {
+                return wrong("on_road", format!("`{name}` has no road to stand on; give road: \"NAME\""));
+            }
+            (Some(place), Some((form, _))) if !(0.0..=form.rows() as f64).contains(&place.row) => {
+                let (row, rows) = (place.row, form.rows());
+                return wrong("on_road", format!("the road of `{name}` has no row {row}; give one from 0 to {rows}"));
+            }
+            _ => {}
         }
         if *six && placement.method.is_some() {
             return wrong(

@@ -213,7 +213,7 @@ fn check(mut scene: LoadedScene) -> Result<LoadedScene, FileError> {
         ));
     }
     let mut warned = BTreeSet::new();
-    let mut warnings = Vec::new();
+    let (mut warnings, mut ill_timed) = (Vec::new(), false);
     for (i, body) in scene.bodies().enumerate() {
         let body = body?;
         if let Some(ground) = scene.file.ground.as_ref().filter(|_| body.six.is_none()) {
@@ -222,12 +222,21 @@ fn check(mut scene: LoadedScene) -> Result<LoadedScene, FileError> {
         if let Some(muscles) = &body.muscles
             && warned.insert(&scene.creatures[i].0)
         {
-            warnings.extend(wide_waves(muscles).map(|text| format!("{}: {text}", scene.creatures[i].0)));
+            warnings.extend(wide_waves(muscles).map(|(path, text)| warning(&scene.creatures[i].0, path, text)));
+        }
+        if body.six.is_some() && scene.file.clock.dt() != SIX_MATRIX_DT && !ill_timed {
+            ill_timed = true;
+            let problem = format!(
+                "steps are of {}, and the forces of `{}` are per step: its numbers belong to dt: {SIX_MATRIX_DT}",
+                scene.file.clock.dt(),
+                scene.file.creatures[i].name
+            );
+            warnings.push(warning(&scene.source, "clock".into(), problem));
         }
         if let Some(waves) = body.waves.as_ref().filter(|waves| waves.is_cut())
             && warned.insert(&scene.creatures[i].0)
         {
-            warnings.push(format!("{}: {}", scene.creatures[i].0, cut_waves(waves)));
+            warnings.push(warning(&scene.creatures[i].0, "waves".into(), cut_waves(waves)));
         }
     }
     scene.warnings = warnings;
@@ -296,23 +305,30 @@ fn check_above_ground(scene: &LoadedScene, ground: &Ground, creature: usize, bod
     })
 }
 
+/// What is no error, as one would be said.
+fn warning(source: &Source, path: String, problem: String) -> String {
+    FileError::Conflict { file: source.to_string(), line: line_in(source, &path), path, problem }.to_string()
+}
+
 fn cut_waves(waves: &TravelingWaves) -> String {
     format!(
-        "waves: their amplitudes and the steering come to {} together, above {}; a rest length never falls below {LEAST_REST_FRACTION} of its length, so \
+        "their amplitudes and the steering come to {} together, above {}; a rest length never falls below {LEAST_REST_FRACTION} of its length, so \
          the waves may be cut",
         waves.reach(),
         1.0 - LEAST_REST_FRACTION
     )
 }
 
-fn wide_waves(muscles: &Muscles) -> impl Iterator<Item = String> + '_ {
+/// The paths of amplitudes that are too large, and why.
+fn wide_waves(muscles: &Muscles) -> impl Iterator<Item = (String, String)> + '_ {
     let most = 1.0 - LEAST_REST_FRACTION;
     muscles.iter().filter(move |muscle| muscle.amplitude > most).map(move |muscle| {
-        format!(
-            "springs[{}].muscle.amplitude: {} is above {most}; the rest length never falls below {LEAST_REST_FRACTION} \
-             of its length, so the wave is cut",
-            muscle.spring.0, muscle.amplitude
-        )
+        let path = format!("springs[{}].muscle.amplitude", muscle.spring.0);
+        let amplitude = muscle.amplitude;
+        let problem = format!(
+            "{amplitude} is above {most}; the rest length never falls below {LEAST_REST_FRACTION} of its length, so the wave is cut"
+        );
+        (path, problem)
     })
 }
 
@@ -323,8 +339,12 @@ fn check_set(scene: &LoadedScene) -> Result<(), FileError> {
     }
     let mut world = spawn::scratch(scene)?;
     for (path, value) in parameters::in_order(&scene.file.set) {
-        parameters::set(&mut world, path, value)
-            .map_err(|error| scene_conflict(scene, "set".into(), error.to_string()))?;
+        parameters::set(&mut world, path, value).map_err(|error| FileError::Conflict {
+            file: scene.source.to_string(),
+            line: line_in(&scene.source, &format!("set.{path}")),
+            path: "set".into(),
+            problem: error.to_string(),
+        })?;
     }
     Ok(())
 }

@@ -159,6 +159,10 @@ fn a_frozen_body_is_said_and_exits_with_1() {
     assert!(said.contains("stability limit of `plain`") && said.contains("plain: particle"), "{said}");
     let result: Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!((result["steps"].as_u64(), result["bodies"][0]["status"].as_str()), (Some(100), Some("frozen")));
+    let frozen = &result["bodies"][0]["frozen"];
+    let (step, time) = (frozen["step"].as_u64().unwrap(), frozen["time"].as_f64().unwrap());
+    assert!(said.contains(&format!("exploded at step {step} ")) && time == 2.0 * step as f64, "{frozen} of {said}");
+    assert!(said.contains(frozen["reason"].as_str().unwrap()), "{frozen} of {said}");
 }
 
 #[test]

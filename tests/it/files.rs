@@ -273,6 +273,20 @@ fn conflicts_of_a_scene_are_named() {
         &["set: worm.particles.mass: 0 is not allowed; give a finite number above 0"],
     );
 
+    // Each entry by its own line, also where its path has numbers in it; none may stand twice.
+    let many = |second: &str| {
+        let entries = format!("set: {{\n\"worm.friction.drag\": 1,\n{second}}}");
+        scene_problem(SCENE_TEXT.replace("budget: Pixels(1)", &entries))
+    };
+    let line = 2 + SCENE_TEXT.lines().position(|line| line.contains("budget")).unwrap() + 1;
+    for (second, problem) in [
+        ("\"worm.springs[0].stifness\": 2", "set: "),
+        ("\"worm.particles[3].mass\": 2", "`worm` has 3 particles"),
+        ("\"worm.friction.drag\": 2", "`worm.friction.drag` is given twice; give it once"),
+    ] {
+        assert_says(&many(second), &[&format!(":{line}:"), problem]);
+    }
+
     let unknown = SCENE_TEXT.replace("\"garden-worm\"", "\"garden-wurm\"");
     assert_says(
         &scene_problem(unknown),
@@ -338,7 +352,11 @@ fn amplitudes_that_the_least_rest_length_cuts_are_warned_of() {
     let (_folder, path) = file("wide.creature.ron", RAW.replacen("amplitude: 0.25", "amplitude: 0.9", 1));
     let scene = scenes::load(name(&path)).unwrap();
     assert_eq!(scene.warnings.len(), 1);
-    assert_says(&scene.warnings[0], &["wide.creature.ron: springs[0].muscle.amplitude: 0.9 is above 0.8"]);
+    let line = 1 + RAW.lines().position(|line| line.contains("amplitude")).unwrap();
+    assert_says(
+        &scene.warnings[0],
+        &[&format!("wide.creature.ron:{line}: springs[0].muscle.amplitude: 0.9 is above 0.8")],
+    );
     assert!(scenes::load("garden").unwrap().warnings.is_empty());
 }
 
@@ -375,7 +393,11 @@ fn a_bad_strand_is_refused_with_its_line_and_field() {
         ("kind: Lateral", "kind: Sideways", &["bad.creature.ron:3", "waves[0]", "Lateral"]),
         ("damping: 3.5", "damping: -1", &["damping: -1 is not allowed"]),
         ("ground: Flat", "ground: Terrain(surfaces: [])", &["ground", "surfaces: there is none; give one or more"]),
-        ("(grip: 10)", "(grip: 10), coulomb: (forward: 1, backward: 2)", &["coulomb: works along a spine"]),
+        (
+            "(grip: 10)",
+            "(grip: 10), coulomb: (forward: 1, backward: 2)",
+            &["coulomb: works along single particles", "give friction"],
+        ),
     ] {
         let text = STRAND.replacen(from, to, 1);
         assert_ne!(text, STRAND);
@@ -388,7 +410,8 @@ fn waves_that_the_least_rest_length_cuts_are_warned_of() {
     let (_folder, path) = file("wide.creature.ron", STRAND.replacen("amplitude: 0.3", "amplitude: 0.9", 1));
     let scene = scenes::load(name(&path)).unwrap();
     assert_eq!(scene.warnings.len(), 1);
-    assert_says(&scene.warnings[0], &["wide.creature.ron: waves:", "0.9 together, above 0.8"]);
+    let line = 1 + STRAND.lines().position(|line| line.contains("waves")).unwrap();
+    assert_says(&scene.warnings[0], &[&format!("wide.creature.ron:{line}: waves:"), "0.9 together, above 0.8"]);
 }
 
 #[test]
@@ -422,6 +445,8 @@ fn what_a_scene_names_and_is_nowhere_is_reported_with_its_place() {
             "did you mean garden-worm?",
         ],
     );
+    let seeds = scene_problem(SCENE_TEXT.replacen("Garden(seed: 7)", "Garden(seed: 7, weeds: 3)", 1));
+    assert_says(&seeds, &["weeds", "seed"]);
     let far = scene_problem(SCENE_TEXT.replacen("at: (0, 0, 0)", "at: (0, 0, -1e308)", 1));
     assert_says(&far, &[".scene.ron:2: creatures[0].at: -1e308 is too far away", "1e9 at the most"]);
     let road =
@@ -437,6 +462,40 @@ fn creatures_are_looked_for_beside_their_scene_first() {
     assert!(scenes::load(name(&path)).unwrap().files().contains(&worm));
     fs::remove_file(&worm).unwrap();
     assert!(!scenes::load(name(&path)).unwrap().files().contains(&worm));
+}
+
+#[test]
+fn every_example_in_the_reference_of_files_is_good() {
+    let text = include_str!("../../assets/FILES.md");
+    let mut seen = [0; 3];
+    for block in text.split("```ron\n").skip(1) {
+        let block = &block[..block.find("```").unwrap()];
+        let begins = |head: &str| block.lines().any(|line| line.starts_with(head));
+        let folder = TempDir::new().unwrap();
+        let write = |name: &str, text: &str| {
+            let path = folder.path().join(name);
+            fs::write(&path, text).unwrap();
+            path
+        };
+        let path = if begins("Road(") {
+            write("way.road.ron", block);
+            let on_it = r#"(name: "r", creature: "roller", on_road: (row: 3))"#;
+            let scene =
+                format!("Scene(version: 1, title: \"t\", road: \"way\", creatures: [{on_it}], clock: (dt: 0.01))");
+            seen[2] += 1;
+            write("on-it.scene.ron", &scene)
+        } else if begins("Scene(") {
+            seen[1] += 1;
+            write("x.scene.ron", block)
+        } else {
+            assert!(begins("Creature("), "{block}");
+            seen[0] += 1;
+            write("x.creature.ron", block)
+        };
+        let scene = scenes::load(name(&path)).unwrap_or_else(|error| panic!("{error} in\n{block}"));
+        assert_eq!(scene.warnings, [""; 0], "{block}");
+    }
+    assert!(seen.iter().all(|count| *count > 2), "{seen:?}");
 }
 
 #[test]

@@ -53,6 +53,14 @@ fn what_does_nothing_in_a_scene_is_refused_with_its_line() {
             [":3: creatures[0].on_road: ", "no road is below `r` there; give another row, or less aside"],
         ),
         (
+            "road: \"rough-road\", creatures: [\n(name: \"r\", creature: \"roller\", on_road: (row: 60.5))]".into(),
+            [":3: creatures[0].on_road: ", "the road of `r` has no row 60.5; give one from 0 to 60"],
+        ),
+        (
+            "road: \"helix\", creatures: [\n(name: \"r\", creature: \"roller\", on_road: (row: -1))]".into(),
+            [":3: creatures[0].on_road: ", "the road of `r` has no row -1; give one from 0 to "],
+        ),
+        (
             "creatures: [\n\n(name: \"r\", creature: \"roller\", method: RungeKutta4)]".into(),
             [":4: creatures[0].method: ", "is one method; leave it out"],
         ),
@@ -156,5 +164,40 @@ fn roads_of_one_particle_and_of_none_are_files_too() {
         }
         let height = particles(&app, bodies[1]).center().y;
         assert!(height < -50.0, "{rows} {place}: a roller that nothing holds is at {height}");
+    }
+}
+
+#[test]
+fn a_step_to_which_the_numbers_of_a_creature_do_not_belong_is_warned_of() {
+    let warnings = |clock: &str| {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("slow.scene.ron");
+        let roller = r#"(name: "r", creature: "roller"), (name: "i", creature: "inchworm")"#;
+        std::fs::write(&path, format!("Scene(version: 1, title: \"t\", creatures: [{roller}],\n{clock})")).unwrap();
+        wriggle::scenes::load(path.to_str().unwrap()).unwrap().warnings
+    };
+    assert_eq!(warnings("clock: (dt: 0.01)"), [""; 0]);
+    let fine = warnings("clock: (dt: 0.001)");
+    assert!(
+        fine.len() == 1 && fine[0].contains(".ron:2: clock: steps are of 0.001, and the forces of `r`"),
+        "{fine:?}"
+    );
+    let left_out = warnings("");
+    assert!(left_out.len() == 1 && left_out[0].contains("belong to dt: 0.01"), "{left_out:?}");
+}
+
+#[test]
+fn numbers_of_rough_road_are_refused_with_their_line() {
+    let road = |field: &str| {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("x.road.ron"), format!("Road(version: 1, form: Rough(\n{field}))")).unwrap();
+        let path = folder.path().join("x.scene.ron");
+        let scene = "Scene(version: 1, title: \"t\", road: \"x\", creatures: [(name: \"r\", creature: \"roller\")])";
+        std::fs::write(&path, scene).unwrap();
+        wriggle::scenes::load(path.to_str().unwrap()).unwrap_err().to_string()
+    };
+    for field in ["middle", "signs"] {
+        let error = road(&format!("{field}: (inf, 0)"));
+        assert!(error.contains("x.road.ron:2:") && error.contains(field), "{error}");
     }
 }

@@ -80,8 +80,10 @@ pub struct Rough {
     #[serde(deserialize_with = "numbers::finite")]
     pub bump: f64,
     /// The x and z of its middle; (−8, −8). Only these put the printed Inchworm on its start.
+    #[serde(deserialize_with = "numbers::pair")]
     pub middle: (f64, f64),
     /// The signs of the cosine and the sine of its plan; (1, 1).
+    #[serde(deserialize_with = "numbers::pair")]
     pub signs: (f64, f64),
     /// How many rings; 60.
     pub rings: u32,
@@ -162,6 +164,11 @@ impl RoadForm {
         // The middle goes on to the end of the last row's stretch, as it begins at the start of the first.
         let line = (0..=rows).map(|row| self.station(row as f64).middle);
         Road::new(points, if rows == 0 { Vec::new() } else { line.collect() })
+    }
+
+    /// How many rows it has; none where its numbers allow no road.
+    pub fn rows(&self) -> usize {
+        self.counts().map_or(0, |(rows, _)| rows)
     }
 
     /// How many rows it has, and how many particles in each.
