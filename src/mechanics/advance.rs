@@ -49,6 +49,12 @@ pub struct Advance<'a, R, const D: usize> {
 impl<R: Real, const D: usize> Advance<'_, R, D> {
     /// Takes the steps. Which vectors the processor has decides how fast, and not what comes out.
     pub fn run(self) {
+        if self.model.lattice.is_some()
+            && let Some(rule) = self.method.kick_drift(self.model)
+            && self.model.step_lattice(rule, self.state, self.steps)
+        {
+            return;
+        }
         let located = self.model.stick == StickRule::Located && self.model.coulomb.is_none();
         match self.method {
             Method::RungeKutta2 if located => self.wide::<LaneByLane<Located<RungeKutta2<f64, D>, D>, R, D>>(),

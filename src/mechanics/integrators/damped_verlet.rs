@@ -36,11 +36,6 @@ impl<R: Real, const D: usize> Integrator<R, D> for DampedVerlet<R, D> {
 
     #[inline(always)]
     fn step(&mut self, model: &mut Model<R, D>, state: &mut State<R, D>, time: f64) {
-        let kept = 1.0 - model.damping.map_or(0.0, |damping| damping.loss.lane(0));
-        let rule = KickDrift { dt: model.dt, before: 0.5 * model.dt, after: 0.5 * model.dt, rate: 0.0, kept };
-        if model.step_lattice(rule, state) {
-            return;
-        }
         let (dt, half) = (R::splat(model.dt), R::splat(0.5 * model.dt));
         for ((middle, x), v) in self.middle.iter_mut().zip(&state.position).zip(&state.velocity) {
             for axis in 0..D {
@@ -63,6 +58,12 @@ impl<R: Real, const D: usize> Integrator<R, D> for DampedVerlet<R, D> {
         }
         model.apply_contact(state);
     }
+}
+
+/// The step as a drift, a kick and a drift.
+pub(super) fn kick_drift<R: Real, const D: usize>(model: &Model<R, D>) -> KickDrift {
+    let kept = 1.0 - model.damping.map_or(0.0, |damping| damping.loss.lane(0));
+    KickDrift { dt: model.dt, before: 0.5 * model.dt, after: 0.5 * model.dt, rate: 0.0, kept }
 }
 
 /// See the head of this file. A λ that comes from a rate is the smaller the smaller the step: that of a step as large as without it is safe.

@@ -20,7 +20,7 @@ mod xpbd;
 use bevy::{ecs::prelude::*, prelude::ReflectComponent, reflect::Reflect};
 use serde::{Deserialize, Serialize};
 
-use super::{Model, Real, State, stability::StabilityBound};
+use super::{Model, Real, State, lattice::KickDrift, stability::StabilityBound};
 
 pub use damped_verlet::DampedVerlet;
 pub use exact_flow::ExactFlow;
@@ -163,6 +163,16 @@ impl Method {
     /// Whether its steps ask a body only for its forces, and not for its springs one by one.
     pub fn asks_forces_alone(self) -> bool {
         self.side_by_side() && self != Self::Xpbd
+    }
+
+    /// How it moves masses that nothing but forces acts on, if it is a method of kicks and drifts.
+    pub(super) fn kick_drift<R: Real, const D: usize>(self, model: &Model<R, D>) -> Option<KickDrift> {
+        match self {
+            Self::SemiImplicitEuler => Some(semi_implicit_euler::kick_drift(model)),
+            Self::StormerVerlet => Some(stormer_verlet::kick_drift(model)),
+            Self::DampedVerlet => Some(damped_verlet::kick_drift(model)),
+            _ => None,
+        }
     }
 
     /// Whether it can stop its steps where masses stick and slip.

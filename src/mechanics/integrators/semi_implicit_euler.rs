@@ -31,11 +31,6 @@ impl<R: Real, const D: usize> Integrator<R, D> for SemiImplicitEuler<R, D> {
 
     #[inline(always)]
     fn step(&mut self, model: &mut Model<R, D>, state: &mut State<R, D>, time: f64) {
-        let rate = model.damping.map_or(0.0, |damping| damping.rate.lane(0));
-        let rule = KickDrift { dt: model.dt, before: 0.0, after: model.dt, rate, kept: 1.0 };
-        if model.step_lattice(rule, state) {
-            return;
-        }
         let dt = R::splat(model.dt);
         model.acceleration(time, &state.position, &state.velocity, &mut self.acceleration);
         for (v, a) in state.velocity.iter_mut().zip(&self.acceleration) {
@@ -51,6 +46,12 @@ impl<R: Real, const D: usize> Integrator<R, D> for SemiImplicitEuler<R, D> {
         }
         model.apply_contact(state);
     }
+}
+
+/// The step as a kick and a drift.
+pub(super) fn kick_drift<R: Real, const D: usize>(model: &Model<R, D>) -> KickDrift {
+    let rate = model.damping.map_or(0.0, |damping| damping.rate.lane(0));
+    KickDrift { dt: model.dt, before: 0.0, after: model.dt, rate, kept: 1.0 }
 }
 
 /// The step is stable exactly while λ_max(M⁻¹(h²K + 2hC)) ≤ 4. Each pair of rates bounds a row of that by h²κ + 2hγ ≤ 4, which gives

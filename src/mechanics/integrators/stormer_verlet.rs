@@ -32,11 +32,6 @@ impl<R: Real, const D: usize> Integrator<R, D> for StormerVerlet<R, D> {
 
     #[inline(always)]
     fn step(&mut self, model: &mut Model<R, D>, state: &mut State<R, D>, time: f64) {
-        let rate = model.damping.map_or(0.0, |damping| damping.rate.lane(0));
-        let rule = KickDrift { dt: model.dt, before: 0.5 * model.dt, after: 0.5 * model.dt, rate, kept: 1.0 };
-        if model.step_lattice(rule, state) {
-            return;
-        }
         let (dt, half) = (R::splat(model.dt), R::splat(0.5 * model.dt));
         for ((middle, x), v) in self.middle.iter_mut().zip(&state.position).zip(&state.velocity) {
             for axis in 0..D {
@@ -58,6 +53,12 @@ impl<R: Real, const D: usize> Integrator<R, D> for StormerVerlet<R, D> {
         }
         model.apply_contact(state);
     }
+}
+
+/// The step as a drift, a kick and a drift.
+pub(super) fn kick_drift<R: Real, const D: usize>(model: &Model<R, D>) -> KickDrift {
+    let rate = model.damping.map_or(0.0, |damping| damping.rate.lane(0));
+    KickDrift { dt: model.dt, before: 0.5 * model.dt, after: 0.5 * model.dt, rate, kept: 1.0 }
 }
 
 /// In the middles the method is semi-implicit Euler.

@@ -10,6 +10,7 @@
 
 mod join;
 mod layer;
+mod march;
 mod sweep;
 mod tasks;
 
@@ -21,8 +22,9 @@ use super::{BodyParts, Model, Real, State, ground::ContactKind, model::LONGEST_S
 
 use join::{Ask, LANES, Way};
 use layer::Layer;
+use march::march;
 use sweep::{Grid, Slab, run};
-use tasks::{Accelerate, Measure, Move};
+use tasks::{Accelerate, Measure, Motion, Move};
 
 pub(super) use tasks::KickDrift;
 
@@ -153,34 +155,18 @@ impl LatticeRows {
         }))
     }
 
-    /// Takes a step. Whether a spring was too long.
-    fn step(
-        &mut self,
-        rule: KickDrift,
-        gravity: f64,
-        floor: bool,
-        inverse_mass: &[f64],
-        mut x: &mut [[f64; 3]],
-        mut v: &mut [[f64; 3]],
-    ) -> bool {
+    /// Takes so many steps. Whether a spring was too long.
+    fn steps(&mut self, steps: u64, motion: Motion<'_>, mut x: &mut [[f64; 3]], mut v: &mut [[f64; 3]]) -> bool {
         let layer = self.layer();
-        // The layers beside each slab, as they are before the step.
-        let mut beside = Vec::new();
-        self.slabs_of(Ask::Lengths, |start, count| {
-            let copy = |z: Option<usize>| {
-                let rows = z.map(|z| z * layer..(z + 1) * layer).filter(|rows| rows.end <= x.len());
-                rows.map(|rows| (x[rows.clone()].to_vec(), v[rows].to_vec())).unwrap_or_default()
-            };
-            beside.push([copy(start.checked_sub(1)), copy(Some(start + count))]);
-        });
-        let (mut beside, ask) = (beside.into_iter(), self.asks_forces());
-        run(self.slabs_of(ask, |start, count| {
+        let ask = self.asks_forces();
+        let slabs = self.slabs_of(ask, |start, count| {
             let (position, more_x) = core::mem::take(&mut x).split_at_mut(count * layer);
             let (velocity, more_v) = core::mem::take(&mut v).split_at_mut(count * layer);
             (x, v) = (more_x, more_v);
-            let beside = beside.next().unwrap_or_default();
-            Move { rule, gravity, floor, inverse_mass, start, count, beside, position, velocity }
-        }))
+            let beside = Default::default();
+            Move { motion, start, count, beside, position, velocity }
+        });
+        march(slabs, steps)
     }
 
     fn asks_forces(&self) -> Ask {
@@ -218,10 +204,9 @@ impl<R: Real, const D: usize> Model<R, D> {
         }
     }
 
-    /// Takes a whole step with a block on which nothing acts but its springs, gravity, damping by mass and the flat ground: every layer is moved as soon as its forces are
-    /// known, while it is in the cache. Gives back whether it did; if not, the step is still to be taken.
-    #[inline(never)]
-    pub(super) fn step_lattice(&mut self, rule: KickDrift, state: &mut State<R, D>) -> bool {
+    /// Takes so many steps with a block on which nothing acts but its springs, gravity, damping by mass and the flat ground: every layer is moved as soon as its forces
+    /// are known, while it is in the cache. Gives back whether it did; if not, the steps are still to be taken.
+    pub(super) fn step_lattice(&mut self, rule: KickDrift, state: &mut State<R, D>, steps: u64) -> bool {
         let (kind, gravity) = (self.contact.kind, self.gravity.map_or(0.0, |gravity| gravity.lane(0)));
         if self.pull.is_some() || self.friction.is_some() || self.coulomb.is_some() || kind == ContactKind::Terrain {
             return false;
@@ -231,8 +216,9 @@ impl<R: Real, const D: usize> Model<R, D> {
             return false;
         };
         let Some(velocity) = vectors_mut(&mut state.velocity) else { return false };
-        *evaluations += R::splat(1.0);
-        if rows.step(rule, gravity, kind == ContactKind::Flat, inverse_mass, position, velocity) {
+        *evaluations += R::splat(steps as f64);
+        let motion = Motion { rule, gravity, floor: kind == ContactKind::Flat, inverse_mass };
+        if rows.steps(steps, motion, position, velocity) {
             *overstretched = R::splat(1.0);
         }
         true

@@ -40,6 +40,14 @@ pub(super) struct Slab<'a, T> {
     pub(super) task: T,
 }
 
+impl<T> Slab<'_, T> {
+    /// The same, to be gone through once more afterwards.
+    pub(super) fn again(&mut self) -> Slab<'_, &mut T> {
+        let Self { grid, ask, range, scratch, task } = self;
+        Slab { grid: *grid, ask: *ask, range: range.clone(), scratch, task }
+    }
+}
+
 /// Goes through all slabs, each on a thread. Whether any spring is too long.
 pub(super) fn run<T: Task>(slabs: Vec<Slab<'_, T>>) -> bool {
     match (ComputeTaskPool::try_get(), slabs.len()) {

@@ -46,26 +46,44 @@ pub(in crate::mechanics) struct KickDrift {
 }
 
 /// Positions and velocities of a layer.
-type Rows = (Vec<[f64; 3]>, Vec<[f64; 3]>);
+pub(super) type Rows = (Vec<[f64; 3]>, Vec<[f64; 3]>);
 
-/// Takes a whole step.
-pub(super) struct Move<'a> {
+/// What moves the masses of a block, beside its springs.
+#[derive(Clone, Copy)]
+pub(super) struct Motion<'a> {
     pub(super) rule: KickDrift,
     pub(super) gravity: f64,
     /// Whether there is a floor at y = 0.
     pub(super) floor: bool,
     pub(super) inverse_mass: &'a [f64],
+}
+
+/// Takes whole steps.
+pub(super) struct Move<'a> {
+    pub(super) motion: Motion<'a>,
     /// The first layer of the slab, and how many it has.
     pub(super) start: usize,
     pub(super) count: usize,
-    /// The layers before and behind the slab, which belong to others, as they were.
+    /// The layers before and behind the slab, which belong to others, as they were before the step.
     pub(super) beside: [Rows; 2],
     /// Of the masses of the slab.
     pub(super) position: &'a mut [[f64; 3]],
     pub(super) velocity: &'a mut [[f64; 3]],
 }
 
-impl Task for Move<'_> {
+impl Move<'_> {
+    /// Copies the first or the last layer of the slab.
+    pub(super) fn hand_out(&self, which: usize, into: &mut Rows) {
+        let layer = self.position.len() / self.count;
+        let rows = if which == 0 { 0..layer } else { self.position.len() - layer..self.position.len() };
+        into.0.clear();
+        into.0.extend_from_slice(&self.position[rows.clone()]);
+        into.1.clear();
+        into.1.extend_from_slice(&self.velocity[rows]);
+    }
+}
+
+impl Task for &mut Move<'_> {
     #[inline(always)]
     fn read(&self, into: &mut Layer, layer: usize, masses: Range<usize>, _: Ask) {
         let (position, velocity) = if layer < self.start {
@@ -77,14 +95,15 @@ impl Task for Move<'_> {
             let own = masses.start - first..masses.end - first;
             (&self.position[own.clone()], &self.velocity[own])
         };
-        into.set(position, Some(velocity), self.rule.before);
+        into.set(position, Some(velocity), self.motion.rule.before);
     }
 
     #[inline(always)]
     fn write(&mut self, from: &mut Layer, masses: Range<usize>) {
         let first = self.start * masses.len();
         let own = masses.start - first..masses.end - first;
-        from.kick(self.rule, &self.inverse_mass[masses], self.gravity, self.floor);
+        let Motion { rule, gravity, floor, inverse_mass } = self.motion;
+        from.kick(rule, &inverse_mass[masses], gravity, floor);
         from.write(&mut self.position[own.clone()], &mut self.velocity[own]);
     }
 }
