@@ -12,7 +12,7 @@ use super::{CliError, Outcome};
 use crate::{
     body::Particles,
     creatures::FileError,
-    physics::{BodyFrozen, Clock, Cost, Frozen, PhysicsPlugin, Plan, Ticks},
+    physics::{BodyFrozen, BodyInverted, Clock, Cost, Frozen, PhysicsPlugin, Plan, Ticks},
     scenes::{self, LoadedScene, SceneBodies, garden},
 };
 
@@ -79,6 +79,8 @@ impl Headless {
         self.world_mut().run_schedule(Ticks);
         let mut said = self.unstable();
         said.extend(self.world_mut().resource_mut::<Messages<BodyFrozen>>().drain().map(|frozen| frozen.text));
+        let inverted = &mut self.world_mut().resource_mut::<Messages<BodyInverted>>();
+        said.extend(inverted.drain().map(|inverted| format!("warning: {}", inverted.text)));
         said
     }
 

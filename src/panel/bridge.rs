@@ -22,7 +22,7 @@ use crate::{
     body::{Particles, Rules},
     creatures::library,
     mechanics::integrators::Method,
-    physics::{BodyFrozen, Clock, Frozen, Plan, Restart, Shown, Work},
+    physics::{BodyFrozen, BodyInverted, Clock, Frozen, Plan, Restart, Shown, Work},
     scenes::{self, CurrentScene, Runner, SceneChange, SceneProblem, parameters},
     view::SceneCamera,
 };
@@ -45,6 +45,7 @@ pub struct Known {
 /// Takes up what the watch and the scenes report.
 pub(super) fn listen(
     mut frozen: MessageReader<BodyFrozen>,
+    mut inverted: MessageReader<BodyInverted>,
     mut problems: MessageReader<SceneProblem>,
     mut known: ResMut<Known>,
     mut settings: ResMut<Settings>,
@@ -52,6 +53,9 @@ pub(super) fn listen(
     for BodyFrozen { body, text } in frozen.read() {
         known.frozen.insert(*body, text.clone());
         known.read_at = None;
+    }
+    for BodyInverted { text, .. } in inverted.read() {
+        settings.tell(true, text.clone());
     }
     for problem in problems.read() {
         settings.tell(true, problem.text.clone());

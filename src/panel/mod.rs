@@ -41,7 +41,7 @@ pub use settings::{Action, BodyInfo, CostInfo, Files, Note, Settings};
 pub use traces::Traces;
 
 use crate::{
-    physics::{BodyFrozen, Restart},
+    physics::{BodyFrozen, BodyInverted, Restart},
     scenes::{SceneChange, SceneProblem},
     view::{CoveredLeft, PointerOnPanel},
 };
@@ -64,6 +64,7 @@ impl Plugin for PanelPlugin {
         // Its own choice is the first camera that is spawned, which may draw into an image.
         app.world_mut().resource_mut::<EguiGlobalSettings>().auto_create_primary_context = false;
         app.add_message::<BodyFrozen>()
+            .add_message::<BodyInverted>()
             .add_message::<Restart>()
             .add_message::<SceneChange>()
             .add_message::<SceneProblem>()

@@ -45,7 +45,7 @@ pub use steer::Steer;
 pub use step::{Cost, Work};
 pub use sync::{FollowParticle, Previous, Shown, ShownLap};
 pub use trail::Trail;
-pub use watch::{BodyFrozen, Frozen, Verdict};
+pub use watch::{BodyFrozen, BodyInverted, Frozen, Verdict};
 
 /// The sets in which physics runs, in this order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, SystemSet)]
@@ -95,7 +95,8 @@ impl PhysicsPlugin {
 
 impl Plugin for PhysicsPlugin {
     fn build(&self, app: &mut App) {
-        app.init_resource::<Clock>().init_resource::<Cost>().add_message::<BodyFrozen>().add_message::<Restart>();
+        app.init_resource::<Clock>().init_resource::<Cost>().add_message::<Restart>();
+        app.add_message::<BodyFrozen>().add_message::<BodyInverted>();
         app.register_required_components::<Springs, Method>()
             .register_required_components::<Particles, Plan>()
             .register_required_components::<Particles, Verdict>()

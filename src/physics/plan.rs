@@ -17,10 +17,11 @@ use crate::{
     mechanics::{
         BodyParts,
         integrators::{Method, StickRule},
+        metrics::cell_volume,
     },
 };
 
-use super::{Clock, Frozen, Steer};
+use super::{Clock, Frozen, Steer, watch::BodyInverted};
 
 /// The components of one body, beside its particles, that physics reads.
 #[derive(QueryData)]
@@ -104,6 +105,8 @@ pub struct Plan {
     pub(super) warned: Option<f64>,
     /// Why the body cannot be stepped at all.
     pub(super) misfit: Option<String>,
+    /// Whether a segment was inside out when the body was looked at last.
+    inverted: bool,
 }
 
 impl Plan {
@@ -169,6 +172,7 @@ pub(super) fn plan(clock: Res<Clock>, mut bodies: Query<Planned, (Changes, Witho
 
 /// What is read of a body to watch its limit.
 type Watched = (
+    Entity,
     Option<&'static Name>,
     &'static Particles,
     Parts,
@@ -177,15 +181,31 @@ type Watched = (
     &'static mut Plan,
 );
 
-/// Works out the limit again of every body whose pose may have changed it, and warns where dt is above a limit.
-pub(super) fn watch_limit(clock: Res<Clock>, mut bodies: Query<Watched, (Without<Frozen>, Without<Rules>)>) {
-    for (name, particles, parts, tearing, steer, mut plan) in &mut bodies {
+/// Works out the limit again of every body whose pose may have changed it, and warns where dt is above a limit or a strand has come to be inside out.
+pub(super) fn watch_limit(
+    clock: Res<Clock>,
+    mut bodies: Query<Watched, (Without<Frozen>, Without<Rules>)>,
+    mut inverted: MessageWriter<BodyInverted>,
+) {
+    for (entity, name, particles, parts, tearing, steer, mut plan) in &mut bodies {
+        let name = name.map_or("a body", Name::as_str);
         let body = parts.body(particles, tearing, steer);
         // A restart counts from 0 again.
         let between = STEPS_PER_LIMIT.max(body.springs.len() as u64 / SPRINGS_A_STEP);
         let aged = clock.step().checked_sub(plan.limited_at).is_none_or(|steps| steps >= between);
         if aged && plan.misfit.is_none() && !body.on_axis() {
             plan.limit(&body, &clock);
+            let found = inverted_segment(&body);
+            if let Some(segment) = found.filter(|_| !plan.inverted) {
+                let text = format!(
+                    "{name}: segment {segment} is inside out at step {} (time {:.6}): something squeezes or drives it harder than its springs bear",
+                    clock.step(),
+                    clock.time(),
+                );
+                warn!("{text}");
+                inverted.write(BodyInverted { body: entity, text });
+            }
+            plan.inverted = found.is_some();
         }
         let dt = clock.dt();
         if dt <= plan.stability_limit {
@@ -193,13 +213,18 @@ pub(super) fn watch_limit(clock: Res<Clock>, mut bodies: Query<Watched, (Without
         } else if plan.warned != Some(dt) {
             plan.warned = Some(dt);
             warn!(
-                "{}: dt {dt} is above the stability limit {} of {}; expect it to explode, or choose a smaller dt",
-                name.map_or("a body", Name::as_str),
+                "{name}: dt {dt} is above the stability limit {} of {}; expect it to explode, or choose a smaller dt",
                 plan.limit_text(),
                 body.method.name(),
             );
         }
     }
+}
+
+/// The first segment of a strand that is inside out.
+fn inverted_segment(body: &BodyParts<'_>) -> Option<usize> {
+    let strand = body.strand?;
+    (0..strand.segments()).find(|&segment| cell_volume(body.particles, strand, segment) < 0.0)
 }
 
 fn topology(body: &BodyParts<'_>) -> u64 {

@@ -48,6 +48,15 @@ pub struct BodyFrozen {
     pub text: String,
 }
 
+/// Tells that a segment of a strand is inside out. The body goes on, and may find its shape again.
+#[derive(Clone, Debug, Message)]
+pub struct BodyInverted {
+    /// The body.
+    pub body: Entity,
+    /// What happened, for people: body, segment, step and time.
+    pub text: String,
+}
+
 /// Freezes every body of which a step found that it explodes.
 pub(super) fn watch(
     clock: Res<Clock>,

@@ -340,6 +340,27 @@ fn assert_known(name: &str, body: &BodyParts<'_>) {
 }
 
 #[test]
+fn limits_that_disagree_in_a_stretched_pose_say_so() {
+    // Across a taut string nothing is damped.
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("string.creature.ron");
+    let text = "Creature(version: 1, body: Raw(
+        particles: [(position: (-1, 0, 0), pinned: true), (position: (0, 0, 0)), (position: (1, 0.1, 0), pinned: true)],
+        springs: [(ends: (0, 1), stiffness: 1, damping: 0.3, rest_length: 0.7), (ends: (1, 2), stiffness: 1, damping: 0.3, rest_length: 0.7)]))";
+    std::fs::write(&path, text).unwrap();
+    let rows = limits(&wriggle::scenes::load(path.to_str().unwrap()).unwrap(), &|_, _| {}).unwrap();
+    let disagree = |predicted: f64, found: f64| predicted != found && (predicted - found).abs() > 0.02 * predicted;
+    let mut said = 0;
+    for row in rows {
+        let Some((predicted, found)) = row.predicted.zip(row.linearised) else { continue };
+        let reason = row.reason.is_some_and(|reason| reason.starts_with("its springs are not at their rest lengths"));
+        assert_eq!(reason, disagree(predicted, found), "{row:?}");
+        said += usize::from(reason);
+    }
+    assert!(said > 0);
+}
+
+#[test]
 fn what_is_torn_and_flies_apart_has_not_exploded() {
     // Two masses that leave each other with half of the energy that their spring would hold squeezed to no length.
     let mass = |x: f64| Particle { velocity: DVec3::X * (x - 0.5), ..Particle::at(DVec3::X * x) };

@@ -1,13 +1,19 @@
 //! The watch: what explodes is frozen in its last good state, is named, and does not disturb its neighbour.
 
-use bevy::prelude::*;
+use std::sync::Arc;
+
+use bevy::{math::DVec3, prelude::*};
 use wriggle::{
-    body::{Particles, Spring, SpringId, Springs},
+    body::{Ground, Particles, Spring, SpringId, Springs, Surface, Terrain},
+    creatures::Pose,
     mechanics::integrators::Method,
-    physics::{BodyFrozen, Frozen, Restart},
+    physics::{BodyFrozen, BodyInverted, Frozen, Restart},
 };
 
-use crate::support::{Worm, bits, center, particles, stepping_app};
+use crate::{
+    animal::Animal,
+    support::{Worm, bits, center, particles, stepping_app},
+};
 
 fn messages(app: &mut App) -> Vec<BodyFrozen> {
     app.world_mut().resource_mut::<Messages<BodyFrozen>>().drain().collect()
@@ -151,4 +157,29 @@ fn a_particle_without_springs_is_frozen_when_it_is_not_finite() {
     let frozen = app.world().get::<Frozen>(body).unwrap();
     assert_eq!((frozen.particle.0, frozen.reason.as_str()), (0, "it is not finite"));
     assert!(particles(&app, body).positions().all(|x| x.is_finite()));
+}
+
+#[test]
+fn a_worm_that_is_squeezed_inside_out_is_told_of_once() {
+    let told = |wall: f64| {
+        let wall = Surface::Plane { point: (wall, 0.0, 0.0), normal: (-1.0, 0.0, 0.0) };
+        let ground = Terrain::new([Surface::Floor { height: 0.0 }, wall]).unwrap();
+        let worm = Animal::worm().with(|worm| {
+            worm.dt = 0.05;
+            worm.ground = Some(Ground::Terrain(Arc::new(ground)));
+            worm.pose = Pose { at: DVec3::X * 6.0, ..Pose::default() };
+        });
+        let mut app = stepping_app(worm.dt, 100);
+        worm.spawn(app.world_mut());
+        let mut texts = Vec::new();
+        for _ in 0..42 {
+            app.update();
+            texts.extend(app.world_mut().resource_mut::<Messages<BodyInverted>>().drain().map(|told| told.text));
+        }
+        texts
+    };
+    // It is on its way to a wall that is far, and pushes head on against one that is near.
+    assert_eq!(told(1000.0), [""; 0]);
+    let near = told(18.0);
+    assert!(near.len() == 1 && near[0].contains(" is inside out at step "), "{near:?}");
 }

@@ -19,7 +19,12 @@ use core::sync::atomic::{AtomicUsize, Ordering};
 use bevy::tasks::TaskPool;
 use serde::{Serialize, Serializer};
 
-use crate::{creatures::FileError, lab::ProblemBody, mechanics::integrators::Method, scenes::LoadedScene};
+use crate::{
+    creatures::FileError,
+    lab::ProblemBody,
+    mechanics::{BodyParts, integrators::Method},
+    scenes::LoadedScene,
+};
 
 pub use predicted::predicted_limit;
 pub use scene::scene_limit;
@@ -28,6 +33,11 @@ pub use step_matrix::{growth, linearised_limit};
 
 /// A scene's limit further from the linearised one than this part of it has a reason.
 const NEAR: f64 = 0.06;
+
+/// The linearised limit further from the predicted one than this part of it has a reason.
+const AGREED: f64 = 0.02;
+/// What is rounded off of a length, as a part of it.
+const ROUNDING: f64 = 1e-9;
 
 /// The limits of the step of one body by one method. An infinite limit is none: no step makes the method unstable.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -51,7 +61,8 @@ pub struct Limits {
     /// The smallest step at which the scene's body explodes or the method refuses it; nothing where the method cannot step the body at all.
     #[serde(serialize_with = "limit")]
     pub explodes: Option<f64>,
-    /// Why the body explodes at another step than the linearised one, where it does, or cannot be stepped at all.
+    /// Why the body cannot be stepped at all, the linearised limit is not the predicted one, or the body explodes at another step than that; nothing where
+    /// all agree.
     pub reason: Option<&'static str>,
 }
 
@@ -87,8 +98,12 @@ fn row(scene: &LoadedScene, body: &ProblemBody, method: Method) -> Limits {
     let explodes = linearised.and_then(|linearised| scene_limit(&parts, linearised));
     let reason = linearised
         .zip(explodes)
-        .filter(|&(linearised, explodes)| is_apart(linearised, explodes))
+        .filter(|&(linearised, explodes)| is_apart(linearised, explodes, NEAR))
         .map(|(linearised, explodes)| scene::reason(&parts, linearised, explodes));
+    let disagree = predicted.zip(linearised).is_some_and(|(predicted, found)| is_apart(predicted, found, AGREED));
+    let pose = (disagree && !is_slack(&parts)).then_some(
+        "its springs are not at their rest lengths where it starts: the pose changes within a step, and what grows there grows slowly",
+    );
     Limits {
         scene: scene.source.stem(),
         body: body.name.clone(),
@@ -97,14 +112,23 @@ fn row(scene: &LoadedScene, body: &ProblemBody, method: Method) -> Limits {
         bound: parts.stability_limit(0.0),
         linearised,
         explodes,
-        reason: refused.or(reason),
+        reason: refused.or(pose).or(reason),
     }
 }
 
-/// Whether two limits differ by more than is expected of them.
-fn is_apart(a: f64, b: f64) -> bool {
-    let is_near = (b - a).abs() <= NEAR * a && a.is_finite();
+/// Whether two limits differ by more than this part of the first.
+fn is_apart(a: f64, b: f64, part: f64) -> bool {
+    let is_near = (b - a).abs() <= part * a && a.is_finite();
     a != b && !is_near
+}
+
+/// Whether no spring pulls or pushes before muscles do.
+fn is_slack(body: &BodyParts<'_>) -> bool {
+    let position = |end| body.particles.position(end).unwrap_or_default();
+    body.springs.iter().all(|spring| {
+        let length = position(spring.ends[0]).distance(position(spring.ends[1]));
+        (length - spring.rest_length).abs() <= ROUNDING * spring.rest_length
+    })
 }
 
 /// JSON has no infinity.

@@ -7,7 +7,7 @@ use crate::{
     mechanics::{Advance, BodyParts, Model, State, Timeline, elastic_energy, kinetic_energy, momentum},
 };
 
-use super::{is_apart, linear::Linear, search::bisect};
+use super::{NEAR, is_apart, linear::Linear, search::bisect};
 
 /// For how many cycles of its slowest muscle or wave a body is watched.
 const CYCLES: f64 = 50.0;
@@ -78,7 +78,7 @@ pub(super) fn reason(body: &BodyParts<'_>, linearised: f64, explodes: f64) -> &'
     }
     if explodes < linearised {
         return match scene_limit(&slippery, linearised) {
-            Some(without) if !is_apart(linearised, without) => {
+            Some(without) if !is_apart(linearised, without, NEAR) => {
                 match body.friction.is_some() || body.coulomb.is_some() {
                     true => "friction lets masses go with a jerk",
                     false => "it falls and strikes the ground, which is no small disturbance",
