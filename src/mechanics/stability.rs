@@ -117,6 +117,19 @@ impl BodyParts<'_> {
     pub fn stability_limit(&self, time: f64) -> f64 {
         self.method.stability_limit(&stability_bound(self, time))
     }
+
+    /// The dt above which to expect that it explodes: the [limit](Self::stability_limit), but for explicit Euler and RK2 while springs are stretched. Those are sure
+    /// of no step then, because nothing damps a motion across a taut spring. Such motions are slow and grow slowly, or friction holds them; this is the limit
+    /// of what the springs damp.
+    pub fn alarm_limit(&self, time: f64) -> f64 {
+        let bound = stability_bound(self, time);
+        let limit = self.method.stability_limit(&bound);
+        if limit > 0.0 {
+            return limit;
+        }
+        let [least_ratio, _] = ratios(self);
+        self.method.stability_limit(&StabilityBound { least_ratio, ..bound })
+    }
 }
 
 /// A spring in its present pose.

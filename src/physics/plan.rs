@@ -111,13 +111,13 @@ pub struct Plan {
 
 impl Plan {
     /// The largest dt at which the body is sure to be stable with its method and in its present pose: never above the true limit of the
-    /// linearised body. Infinite for a body that cannot oscillate.
+    /// linearised body, but for [two methods](BodyParts::alarm_limit) while springs are stretched. Infinite for a body that cannot oscillate.
     pub fn stability_limit(&self) -> f64 {
         self.stability_limit
     }
 
     fn limit(&mut self, body: &BodyParts<'_>, clock: &Clock) {
-        self.stability_limit = body.stability_limit(clock.time());
+        self.stability_limit = body.alarm_limit(clock.time());
         self.limited_at = clock.step();
     }
 

@@ -3,12 +3,13 @@
 use bevy::math::DVec3;
 use wriggle::{
     body::{Gravity, Particle, ParticleId, Particles, Spring, Springs},
+    cli::Headless,
     creatures::{
         Pose,
         library::{self, CREATURE},
     },
     mechanics::{BodyParts, integrators::Method},
-    physics::Plan,
+    physics::{Plan, body_parts},
 };
 
 use crate::support::{Worm, stepping_app};
@@ -204,4 +205,26 @@ fn the_plan_follows_a_parameter_while_the_app_is_paused() {
     app.update();
     assert_eq!(app.world().resource::<wriggle::physics::Clock>().step(), step);
     assert!(app.world().get::<Plan>(body).unwrap().stability_limit() < 0.05);
+}
+
+#[test]
+fn springs_that_are_taut_for_a_while_raise_no_alarm() {
+    for scene in ["cliff", "two-masses"] {
+        let mut run = Headless::new(wriggle::scenes::load(scene).unwrap(), None).unwrap();
+        let mut taut = false;
+        for _ in 0..6 {
+            run.step(1024);
+            let clock = run.clock();
+            for (name, body, _) in run.bodies() {
+                let parts = body_parts(body).unwrap();
+                taut |= parts.stability_limit(clock.time()) == 0.0;
+                let limit = body.get::<Plan>().unwrap().stability_limit();
+                assert!(clock.dt() <= limit && limit.is_finite(), "{scene}: {name} has the limit {limit}");
+            }
+        }
+        assert!(taut, "{scene} has no taut spring");
+    }
+    // A body that no spring damps is still one that explicit Euler cannot step.
+    let undamped = Worm { damping: 0.0, drag: 0.0, method: Method::ExplicitEuler, ..Worm::GARDEN }.body();
+    assert_eq!(undamped.parts().alarm_limit(0.0), 0.0);
 }
