@@ -1,13 +1,11 @@
 //! The springs along one way, eight side by side: the inner loop of a block.
 
-use crate::mechanics::{Lanes, Real};
+use crate::mechanics::Real;
 
-use super::layer::Layer;
-
-/// How many springs are computed side by side.
-pub(super) const LANES: usize = 8;
-
-type Eight = Lanes<LANES>;
+use super::{
+    columns::{Columns, Eight, LANES, eights, eights_mut},
+    layer::Layer,
+};
 
 /// A way to neighbours, and the springs along it.
 #[derive(Clone, Debug)]
@@ -37,24 +35,28 @@ pub(super) enum Ask {
     Damped,
 }
 
-/// Adds the forces of the springs along `way` from the masses of `a` to those of `b`, or of `a` itself. `too_long` becomes 1 where a spring is not shorter than its longest.
+/// Adds the forces of the springs along `way` from the masses of `a` to those of `b`. `too_long` becomes 1 where a spring is not shorter than its longest.
 #[inline(always)]
-pub(super) fn join(ask: Ask, a: &mut Layer, b: Option<&mut Layer>, way: &Way, mask: &[f64], too_long: &mut Eight) {
+pub(super) fn join(
+    ask: Ask,
+    [a, b]: [&Layer; 2],
+    way: &Way,
+    masks: &[Columns<1>],
+    forward: &mut Columns<3>,
+    back: &mut Columns<3>,
+    too_long: &mut Eight,
+) {
     let count = way.upto.saturating_sub(way.from).div_ceil(LANES);
     if count == 0 {
         return;
     }
-    let (from, to) = (way.from, way.from.wrapping_add_signed(way.offset));
-    let Layer { position, velocity, forward, back, .. } = a;
-    let (positions, velocities, back) = match b {
-        None => (&*position, &*velocity, back),
-        Some(b) => (&b.position, &b.velocity, &mut b.back),
-    };
-    let mask = eights(mask, from, count);
-    let x = position.each_ref().map(|x| eights(x, from, count));
-    let y = positions.each_ref().map(|y| eights(y, to, count));
+    let start = way.from.wrapping_add_signed(way.offset);
+    let (from, to) = (way.from..way.from + LANES * count, start..start + LANES * count);
+    let [mask] = masks[way.mask].each().map(|mask| eights(mask, &from));
+    let x = a.position.each().map(|x| eights(x, &from));
+    let y = b.position.each().map(|y| eights(y, &to));
     let (v, w) = if ask == Ask::Damped {
-        (velocity.each_ref().map(|v| eights(v, from, count)), velocities.each_ref().map(|w| eights(w, to, count)))
+        (a.velocity.each().map(|v| eights(v, &from)), b.velocity.each().map(|w| eights(w, &to)))
     } else {
         (x, y)
     };
@@ -65,8 +67,8 @@ pub(super) fn join(ask: Ask, a: &mut Layer, b: Option<&mut Layer>, way: &Way, ma
         }
         return;
     }
-    let [f0, f1, f2] = forward.each_mut().map(|f| eights_mut(f, from, count));
-    let [b0, b1, b2] = back.each_mut().map(|b| eights_mut(b, to, count));
+    let [f0, f1, f2] = forward.each_mut().map(|f| eights_mut(f, &from));
+    let [b0, b1, b2] = back.each_mut().map(|b| eights_mut(b, &to));
     for i in 0..count {
         let apart = difference([y[0][i], y[1][i], y[2][i]], [x[0][i], x[1][i], x[2][i]]);
         let mask = Eight::from(mask[i]);
@@ -108,15 +110,4 @@ fn difference(to: [[f64; LANES]; 3], from: [[f64; LANES]; 3]) -> [Eight; 3] {
 #[inline(always)]
 fn dot(a: [Eight; 3], b: [Eight; 3]) -> Eight {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-/// `count` vectors in a row. Cut to one length, they need no check of their bounds in a loop.
-#[inline(always)]
-fn eights(values: &[f64], from: usize, count: usize) -> &[[f64; LANES]] {
-    &values[from..from + LANES * count].as_chunks().0[..count]
-}
-
-#[inline(always)]
-fn eights_mut(values: &mut [f64], from: usize, count: usize) -> &mut [[f64; LANES]] {
-    &mut values[from..from + LANES * count].as_chunks_mut().0[..count]
 }

@@ -1,98 +1,174 @@
 //! One layer of a block, laid out for the inner loop.
 
-use super::tasks::KickDrift;
+use core::iter::zip;
 
-/// A layer of the grid: an array for each coordinate, with room for neighbours that are not there on either side.
+use crate::mechanics::Real;
+
+use super::{
+    columns::{Columns, Eight, LANES, eights, eights_mut},
+    tasks::KickDrift,
+};
+
+/// A layer of the grid, coordinate by coordinate, with room for neighbours that are not there on either side.
 #[derive(Clone, Debug)]
 pub(super) struct Layer {
-    /// Where the first mass is in the arrays.
+    /// Where the first mass is in the columns.
     pad: usize,
-    pub(super) position: [Vec<f64>; 3],
-    pub(super) velocity: [Vec<f64>; 3],
-    /// The sum of the forces of springs on the masses at which they begin.
-    pub(super) forward: [Vec<f64>; 3],
-    /// The same at which they end.
-    pub(super) back: [Vec<f64>; 3],
+    /// How many masses there are.
+    count: usize,
+    pub(super) position: Columns<3>,
+    pub(super) velocity: Columns<3>,
+    inverse_mass: Columns<1>,
+}
+
+/// The sums of the forces of springs on a layer.
+#[derive(Clone, Debug)]
+pub(super) struct Sums {
+    /// On the masses at which they begin.
+    pub(super) forward: Columns<3>,
+    /// On the masses at which they end, from the same layer.
+    pub(super) within: Columns<3>,
+    /// From the layer before.
+    pub(super) before: Columns<3>,
+}
+
+impl Sums {
+    pub(super) fn new(room: usize) -> Self {
+        Self { forward: Columns::zeros(room), within: Columns::zeros(room), before: Columns::zeros(room) }
+    }
+
+    fn clear(&mut self) {
+        self.forward.clear();
+        self.within.clear();
+        self.before.clear();
+    }
 }
 
 impl Layer {
-    pub(super) fn new(room: usize, pad: usize) -> Self {
-        let zeros = || [vec![0.0; room], vec![0.0; room], vec![0.0; room]];
-        Self { pad, position: zeros(), velocity: zeros(), forward: zeros(), back: zeros() }
+    pub(super) fn new(room: usize, pad: usize, count: usize) -> Self {
+        let (position, velocity, inverse_mass) = (Columns::zeros(room), Columns::zeros(room), Columns::zeros(room));
+        Self { pad, count, position, velocity, inverse_mass }
     }
 
-    /// Puts the masses of a layer here, moved on by `reach` of time, without forces yet.
+    /// Puts the masses of a layer here.
     #[inline(always)]
-    pub(super) fn set(&mut self, position: &[[f64; 3]], velocity: Option<&[[f64; 3]]>, reach: f64) {
+    pub(super) fn deal(&mut self, position: &[[f64; 3]], velocity: Option<&[[f64; 3]]>) {
         deal(position, &mut self.position, self.pad);
         if let Some(velocity) = velocity {
             deal(velocity, &mut self.velocity, self.pad);
         }
-        if reach > 0.0 {
-            for (position, velocity) in self.position.iter_mut().zip(&self.velocity) {
-                for (x, v) in position.iter_mut().zip(velocity) {
-                    *x += *v * reach;
-                }
-            }
-        }
-        for sums in self.forward.iter_mut().chain(&mut self.back) {
-            sums.fill(0.0);
-        }
     }
 
-    /// Kicks its masses, which stand where they are to feel the forces, and lets them drift on. What comes to be below a floor is put back on it and loses what of
-    /// its velocity leads down.
-    #[inline(always)]
-    pub(super) fn kick(&mut self, rule: KickDrift, inverse_mass: &[f64], gravity: f64, floor: bool) {
-        let KickDrift { dt, after, rate, kept, .. } = rule;
-        let (from, count) = (self.pad, inverse_mass.len());
-        let Self { position, velocity, forward, back, .. } = self;
-        for axis in 0..3 {
-            let x = &mut position[axis][from..from + count];
-            let v = &mut velocity[axis][from..from + count];
-            let (f, b) = (&forward[axis][from..from + count], &back[axis][from..from + count]);
-            let gravity = if axis == 1 { gravity } else { 0.0 };
-            for i in 0..count {
-                // What is pinned has no weight, and no velocity that a damping could take.
-                let weight = if inverse_mass[i] > 0.0 { gravity } else { 0.0 };
-                let a = (f[i] + b[i]) * inverse_mass[i] - weight;
-                v[i] = v[i] * kept + (a - rate * v[i]) * dt;
-                x[i] += v[i] * after;
-            }
-        }
-        if floor {
-            let (y, v) = (&mut position[1][from..from + count], &mut velocity[1][from..from + count]);
-            for i in 0..count {
-                let below = inverse_mass[i] > 0.0 && y[i] < 0.0;
-                v[i] = if below && v[i] < 0.0 { 0.0 } else { v[i] };
-                y[i] = if below { 0.0 } else { y[i] };
-            }
-        }
+    /// Puts the inverse masses here.
+    pub(super) fn weigh(&mut self, inverse_mass: &[f64]) {
+        let [column] = self.inverse_mass.each_mut();
+        column[self.pad..self.pad + self.count].copy_from_slice(inverse_mass);
     }
 
     /// Writes where its masses are and how they move.
     #[inline(always)]
-    pub(super) fn write(&self, position: &mut [[f64; 3]], velocity: &mut [[f64; 3]]) {
+    pub(super) fn gather(&self, position: &mut [[f64; 3]], velocity: &mut [[f64; 3]]) {
         gather(&self.position, self.pad, position);
         gather(&self.velocity, self.pad, velocity);
     }
 
-    /// Gives the force on each of its masses to `work`.
-    #[inline(always)]
-    pub(super) fn each_force(&self, count: usize, mut work: impl FnMut(usize, [f64; 3])) {
-        let [f0, f1, f2] = self.forward.each_ref().map(|f| &f[self.pad..self.pad + count]);
-        let [b0, b1, b2] = self.back.each_ref().map(|b| &b[self.pad..self.pad + count]);
-        for i in 0..count {
-            work(i, [f0[i] + b0[i], f1[i] + b1[i], f2[i] + b2[i]]);
+    /// Becomes what another layer of the block will be when it has drifted for so long; with its velocity where that is asked for.
+    pub(super) fn foresee(&mut self, other: &Self, reach: f64, velocity: bool) {
+        for ((to, x), v) in zip(self.position.each_mut(), other.position.each()).zip(other.velocity.each()) {
+            for ((to, x), v) in zip(to, x).zip(v) {
+                *to = *x + *v * reach;
+            }
         }
+        if velocity {
+            self.velocity.copy(&other.velocity);
+        }
+    }
+
+    /// Moves its masses on for so long.
+    #[inline(always)]
+    pub(super) fn drift(&mut self, reach: f64) {
+        if reach > 0.0 {
+            for (position, velocity) in zip(self.position.each_mut(), self.velocity.each()) {
+                for (x, v) in zip(position, velocity) {
+                    *x += *v * reach;
+                }
+            }
+        }
+    }
+
+    /// Kicks its masses, which stand where they are to feel the forces, and lets them drift on. What comes to be below a floor is put back on it and loses what of
+    /// its velocity leads down. The sums are zero afterwards.
+    #[inline(always)]
+    pub(super) fn kick(&mut self, rule: KickDrift, gravity: f64, floor: bool, sums: &mut Sums) {
+        let rows = self.pad..self.pad + self.count.next_multiple_of(LANES);
+        let [inverse_mass] = self.inverse_mass.each().map(|column| eights(column, &rows));
+        let columns = zip(self.position.each_mut(), self.velocity.each_mut());
+        let sums = zip(sums.forward.each_mut(), zip(sums.within.each_mut(), sums.before.each_mut()));
+        for (axis, ((x, v), (f, (w, b)))) in zip(columns, sums).enumerate() {
+            let columns = [x, v, f, w, b].map(|column| eights_mut(column, &rows));
+            // Each on its own: a branch in the loop costs twice its time.
+            match axis {
+                1 if floor => kick::<true>(rule, inverse_mass, gravity, columns),
+                1 => kick::<false>(rule, inverse_mass, gravity, columns),
+                _ => kick::<false>(rule, inverse_mass, 0.0, columns),
+            }
+        }
+    }
+
+    /// Gives the force on each of its masses to `work`. The sums are zero afterwards.
+    #[inline(always)]
+    pub(super) fn each_force(&self, sums: &mut Sums, mut work: impl FnMut(usize, [f64; 3])) {
+        let masses = self.pad..self.pad + self.count;
+        let [f, w, b] = [&sums.forward, &sums.within, &sums.before]
+            .map(|columns| columns.each().map(|column| &column[masses.clone()]));
+        for i in 0..self.count {
+            work(i, [0, 1, 2].map(|axis| f[axis][i] + (w[axis][i] + b[axis][i])));
+        }
+        sums.clear();
     }
 }
 
-/// Deals the coordinates of vectors out to an array each.
+/// The masses of a layer.
 #[inline(always)]
-fn deal(vectors: &[[f64; 3]], columns: &mut [Vec<f64>; 3], pad: usize) {
+fn cut(column: &mut [f64], pad: usize, count: usize) -> &mut [f64] {
+    &mut column[pad..pad + count]
+}
+
+/// Kicks along one axis: positions, velocities and the three sums.
+#[inline(always)]
+fn kick<const FLOOR: bool>(
+    rule: KickDrift,
+    inverse_mass: &[[f64; LANES]],
+    gravity: f64,
+    [x, v, f, w, b]: [&mut [[f64; LANES]]; 5],
+) {
+    let [dt, after, rate, kept] = [rule.dt, rule.after, rule.rate, rule.kept].map(Eight::splat);
+    let (zero, gravity, count) = (Eight::splat(0.0), Eight::splat(gravity), inverse_mass.len());
+    let (x, v, f, w, b) = (&mut x[..count], &mut v[..count], &mut f[..count], &mut w[..count], &mut b[..count]);
+    for i in 0..count {
+        let inverse = Eight::from(inverse_mass[i]);
+        let force = Eight::from(f[i]) + (Eight::from(w[i]) + Eight::from(b[i]));
+        // What is pinned has no weight, and no velocity that a damping could take.
+        let a = force * inverse - zero.if_below(inverse, gravity, zero);
+        let speed = Eight::from(v[i]);
+        let speed = speed * kept + (a - rate * speed) * dt;
+        let place = Eight::from(x[i]) + speed * after;
+        if FLOOR {
+            let least = zero.if_below(inverse, zero, Eight::splat(f64::NEG_INFINITY));
+            v[i] = place.if_below(least, speed.if_below(zero, zero, speed), speed).into();
+            x[i] = place.if_below(least, least, place).into();
+        } else {
+            (x[i], v[i]) = (place.into(), speed.into());
+        }
+        (f[i], w[i], b[i]) = (zero.into(), zero.into(), zero.into());
+    }
+}
+
+/// Deals the coordinates of vectors out to a column each.
+#[inline(always)]
+fn deal(vectors: &[[f64; 3]], columns: &mut Columns<3>, pad: usize) {
     let count = vectors.len();
-    let [x, y, z] = columns.each_mut().map(|column| &mut column[pad..pad + count]);
+    let [x, y, z] = columns.each_mut().map(|column| cut(column, pad, count));
     for i in 0..count {
         x[i] = vectors[i][0];
         y[i] = vectors[i][1];
@@ -100,11 +176,11 @@ fn deal(vectors: &[[f64; 3]], columns: &mut [Vec<f64>; 3], pad: usize) {
     }
 }
 
-/// Gathers vectors from an array for each coordinate.
+/// Gathers vectors from a column for each coordinate.
 #[inline(always)]
-fn gather(columns: &[Vec<f64>; 3], pad: usize, vectors: &mut [[f64; 3]]) {
+fn gather(columns: &Columns<3>, pad: usize, vectors: &mut [[f64; 3]]) {
     let count = vectors.len();
-    let [x, y, z] = columns.each_ref().map(|column| &column[pad..pad + count]);
+    let [x, y, z] = columns.each().map(|column| &column[pad..pad + count]);
     for i in 0..count {
         vectors[i] = [x[i], y[i], z[i]];
     }

@@ -2,81 +2,110 @@
 
 use core::{
     hint,
-    sync::atomic::{AtomicUsize, Ordering},
+    sync::atomic::{AtomicBool, AtomicU64, Ordering},
 };
 use std::{
     panic::resume_unwind,
-    sync::{Mutex, MutexGuard, PoisonError},
+    sync::{Mutex, PoisonError},
     thread,
 };
 
-use super::{
-    sweep::Slab,
-    tasks::{Move, Rows},
-};
+use super::{columns::Columns, join::Ask, layer::Layer, sweep::Slab, tasks::Move};
 
-/// Takes so many steps with slabs that lie one behind the other, each on a thread that stays awake in between. Whether any spring was too long.
+/// Takes so many steps with slabs, each on a thread that stays awake in between. Whether any spring was too long.
 ///
 /// Tasks of a pool would not do: each step would wake its threads anew, which takes as long as the step of a small block, and a task that waits for another keeps
 /// its thread from it.
 pub(super) fn march(mut slabs: Vec<Slab<'_, Move<'_>>>, steps: u64) -> bool {
-    let front = Front { edges: slabs.iter().map(|_| Edges::default()).collect(), arrived: AtomicUsize::new(0) };
     let Some((first, others)) = slabs.split_first_mut() else { return false };
     thread::scope(|scope| {
-        let front = &front;
-        let march = |(i, slab)| scope.spawn(move || front.march(i, slab, steps));
-        let others: Vec<_> = (1..).zip(others).map(march).collect();
-        let found = front.march(0, first, steps);
+        let others: Vec<_> = others.iter_mut().map(|slab| scope.spawn(move || slab.march(steps))).collect();
+        let found = first.march(steps);
         others.into_iter().fold(found, |found, other| found | other.join().unwrap_or_else(|panic| resume_unwind(panic)))
     })
 }
 
-/// The first and the last layer of a slab as they were before a step, each for even and for odd steps.
-type Edges = [[Mutex<Rows>; 2]; 2];
-
-/// What the slabs tell each other.
-struct Front {
-    /// How often a slab was ready for a step.
-    arrived: AtomicUsize,
-    /// Of each slab. When one is ready for a step all others are at least ready for the one before, and may still read what belongs to it.
-    edges: Vec<Edges>,
-}
-
-/// A layer, of which nobody else wants anything at the moment.
-fn lock(rows: &Mutex<Rows>) -> MutexGuard<'_, Rows> {
-    rows.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-impl Front {
-    fn march(&self, i: usize, slab: &mut Slab<'_, Move<'_>>, steps: u64) -> bool {
-        // Before it and behind it.
-        let neighbours = [i.checked_sub(1), Some(i + 1)].map(|neighbour| self.edges.get(neighbour?));
+impl Slab<'_, Move<'_>> {
+    fn march(&mut self, steps: u64) -> bool {
+        let [before, behind] = self.task.borders;
+        let _closing = Closing([before, behind]);
+        self.task.deal(self.layers);
+        let (reach, damped) = (self.task.motion.rule.before, self.ask == Ask::Damped);
         let mut found = false;
-        for step in 0..steps {
-            let turn = (step % 2) as usize;
-            for (which, _) in neighbours.iter().enumerate().filter(|(_, neighbour)| neighbour.is_some()) {
-                slab.task.hand_out(which, &mut lock(&self.edges[i][which][turn]));
+        for _ in 0..steps {
+            if let (Some(border), Some(layer)) = (before, self.layers.first()) {
+                border.layer.send(|into| into.foresee(layer, reach, damped));
             }
-            self.wait();
-            for (which, neighbour) in neighbours.iter().enumerate() {
-                let Some(edges) = neighbour else { continue };
-                core::mem::swap(&mut slab.task.beside[which], &mut lock(&edges[1 - which][turn]));
-            }
-            found |= pulp::Arch::new().dispatch(slab.again());
+            found |= pulp::Arch::new().dispatch(self.again());
         }
+        self.task.gather(self.layers);
         found
     }
+}
 
-    /// Waits until all slabs are ready for the same step.
-    fn wait(&self) {
-        /// Longer than the slabs differ, so that a thread gives way only where there are more threads than cores.
+/// What two slabs that lie one behind the other tell each other in each step.
+pub(super) struct Border {
+    /// From the one behind: its first layer where it feels the springs.
+    pub(super) layer: Post<Layer>,
+    /// From the one before, thereafter: the sums of the springs that lead to that layer.
+    pub(super) sums: Post<Columns<3>>,
+}
+
+impl Border {
+    pub(super) fn new(layer: &Layer) -> Self {
+        Self { layer: Post::new(layer.clone()), sums: Post::new(layer.position.clone()) }
+    }
+}
+
+/// Room for one thing that is sent over and over. The sender hears from the receiver before it sends the next, so that none is lost.
+pub(super) struct Post<T> {
+    item: Mutex<T>,
+    sent: AtomicU64,
+    received: AtomicU64,
+    /// Whether a side is gone.
+    closed: AtomicBool,
+}
+
+impl<T> Post<T> {
+    fn new(item: T) -> Self {
+        Self {
+            item: Mutex::new(item),
+            sent: AtomicU64::new(0),
+            received: AtomicU64::new(0),
+            closed: AtomicBool::new(false),
+        }
+    }
+
+    pub(super) fn send(&self, fill: impl FnOnce(&mut T)) {
+        fill(&mut self.item.lock().unwrap_or_else(PoisonError::into_inner));
+        self.sent.fetch_add(1, Ordering::Release);
+    }
+
+    /// Waits for what is sent next.
+    pub(super) fn receive(&self, fetch: impl FnOnce(&mut T)) {
+        /// Longer than slabs differ, so that a thread gives way only where there are more threads than cores.
         const SPINS: u32 = 4000;
-        let before = self.arrived.fetch_add(1, Ordering::AcqRel);
-        let all = (before / self.edges.len() + 1) * self.edges.len();
+        let received = self.received.fetch_add(1, Ordering::Relaxed);
         let mut spins = 0;
-        while self.arrived.load(Ordering::Acquire) < all {
+        while self.sent.load(Ordering::Acquire) <= received {
+            assert!(!self.closed.load(Ordering::Relaxed), "the thread of a neighbouring slab has panicked");
             spins += 1;
             if spins < SPINS { hint::spin_loop() } else { thread::yield_now() }
+        }
+        fetch(&mut self.item.lock().unwrap_or_else(PoisonError::into_inner));
+    }
+}
+
+/// Closes borders where their slab panics: whoever waits there would wait for ever.
+struct Closing<'a>([Option<&'a Border>; 2]);
+
+impl Drop for Closing<'_> {
+    fn drop(&mut self) {
+        if thread::panicking() {
+            for border in self.0.into_iter().flatten() {
+                border.layer.closed.store(true, Ordering::Relaxed);
+                border.sums.closed.store(true, Ordering::Relaxed);
+            }
         }
     }
 }

@@ -1,13 +1,14 @@
 //! Forces of a block on a regular grid: neighbours by where they are, eight springs at a time, layer by layer.
 //!
-//! The general springs look up the ends of each; here the neighbour along a way is always as many numbers further. Two layers of the grid at a time are
-//! laid out coordinate by coordinate, and of each way to a neighbour all springs that begin in the lower layer are computed side by side. A spring acts forward on the
-//! mass at which it begins and back on the other; both sums are kept apart and come together when a layer is done.
+//! The general springs look up the ends of each; here the neighbour along a way is always as many numbers further. Layers lie coordinate by coordinate; two are
+//! at hand at a time, and of each way to a neighbour all springs that begin in the lower one are computed side by side. A spring acts forward on the mass at which it begins and back
+//! on the other.
 //!
-//! What a mass feels is summed in an order that depends on its place in the grid alone: back along the ways from the layer before, then those of its own layer, in the order of
-//! [`Neighbours::ways`](crate::body::Neighbours::ways), and forward likewise. So a slab of layers comes to the same bits wherever it begins and ends, and threads may share the layers in any
-//! way. A slab computes the springs from the layer before it once more.
+//! Three sums are kept of what a mass feels: forward, to the next layer and then within its own; back within its own; and back from the layer before; each in the order of
+//! [`Neighbours::ways`](crate::body::Neighbours::ways). They come together when all are complete. So a slab of layers comes to the same bits wherever it begins and ends, whoever computes
+//! the springs between two slabs, and threads may share the layers in any way.
 
+mod columns;
 mod join;
 mod layer;
 mod march;
@@ -20,10 +21,11 @@ use crate::body::{Lattice, Neighbours};
 
 use super::{BodyParts, Model, Real, State, ground::ContactKind, model::LONGEST_STRETCH};
 
-use join::{Ask, LANES, Way};
-use layer::Layer;
-use march::march;
-use sweep::{Grid, Slab, run};
+use columns::{Columns, LANES};
+use join::{Ask, Way};
+use layer::{Layer, Sums};
+use march::{Border, march};
+use sweep::{Grid, Scratch, Slab, run};
 use tasks::{Accelerate, Measure, Motion, Move};
 
 pub(super) use tasks::KickDrift;
@@ -39,12 +41,13 @@ pub(super) struct LatticeRows {
     within: Vec<Way>,
     onward: Vec<Way>,
     /// For each of nine ways across a layer, 1 where a mass of the layer has a neighbour there, 0 elsewhere.
-    masks: Vec<Vec<f64>>,
+    masks: Vec<Columns<1>>,
     damped: bool,
     /// How long a spring of each kind is when the watch holds the body for exploded.
     longest: [f64; 3],
-    /// Scratch: two layers for each slab.
-    scratch: Vec<[Layer; 2]>,
+    /// Scratch: all layers, and what each slab needs beside its own.
+    layers: Vec<Layer>,
+    scratch: Vec<Scratch>,
 }
 
 impl BodyParts<'_> {
@@ -76,8 +79,9 @@ impl LatticeRows {
         let room = 2 * pad + layer.next_multiple_of(LANES) + LANES;
         let mask = |way: usize| {
             let (dx, dy) = (way % 3, way / 3);
-            let mut mask = vec![0.0; room];
-            for (i, value) in mask[pad..pad + layer].iter_mut().enumerate() {
+            let mut mask = Columns::zeros(room);
+            let [values] = mask.each_mut();
+            for (i, value) in values[pad..pad + layer].iter_mut().enumerate() {
                 // One more than where the neighbour is.
                 let (x, y) = (i % across + dx, i / across + dy);
                 *value = f64::from(u8::from((1..=across).contains(&x) && (1..=along).contains(&y)));
@@ -104,9 +108,11 @@ impl LatticeRows {
             }
         }
         let masks = (0..9).map(mask).collect();
-        let rows = Self { lattice, within, onward, masks, damped, longest, scratch: Vec::new() };
+        let rows = Self { lattice, within, onward, masks, damped, longest, layers: Vec::new(), scratch: Vec::new() };
         let slabs = rows.slabs();
-        Some(Self { scratch: vec![[Layer::new(room, pad), Layer::new(room, pad)]; slabs], ..rows })
+        let layer = Layer::new(room, pad, layer);
+        let scratch = Scratch { beside: layer.clone(), sums: [Sums::new(room), Sums::new(room)] };
+        Some(Self { layers: vec![layer; lattice.size()[2]], scratch: vec![scratch; slabs], ..rows })
     }
 
     /// Among how many threads its layers are shared.
@@ -126,14 +132,12 @@ impl LatticeRows {
 
     /// Parts the layers into slabs, each with its scratch, its first layer and how many it has. `task` makes what is done with each.
     fn slabs_of<'a, T>(&'a mut self, ask: Ask, mut task: impl FnMut(usize, usize) -> T) -> Vec<Slab<'a, T>> {
-        let [across, along, layers] = self.lattice.size();
-        let Self { within, onward, masks, scratch, .. } = self;
-        let grid = Grid { within, onward, masks, layers, layer: across * along };
-        let share = layers.div_ceil(scratch.len());
-        let starts = (0..layers).step_by(share);
-        let slabs = scratch.iter_mut().zip(starts).map(|(scratch, start)| {
-            let count = share.min(layers - start);
-            Slab { grid, ask, range: start..start + count, scratch, task: task(start, count) }
+        let Self { within, onward, masks, layers, scratch, .. } = self;
+        let grid = Grid { within, onward, masks, layers: layers.len() };
+        let share = layers.len().div_ceil(scratch.len());
+        let slabs = layers.chunks_mut(share).zip(scratch).enumerate().map(|(i, (layers, scratch))| {
+            let (start, count) = (i * share, layers.len());
+            Slab { grid, ask, range: start..start + count, layers, scratch, task: task(start, count) }
         });
         slabs.collect()
     }
@@ -151,20 +155,23 @@ impl LatticeRows {
         run(self.slabs_of(ask, |start, count| {
             let (acceleration, rest) = core::mem::take(&mut left).split_at_mut(count * layer);
             left = rest;
-            Accelerate { position, velocity, inverse_mass, gravity, start, acceleration }
+            Accelerate { ask, position, velocity, inverse_mass, gravity, start, layer, acceleration }
         }))
     }
 
     /// Takes so many steps. Whether a spring was too long.
     fn steps(&mut self, steps: u64, motion: Motion<'_>, mut x: &mut [[f64; 3]], mut v: &mut [[f64; 3]]) -> bool {
-        let layer = self.layer();
-        let ask = self.asks_forces();
+        let (layer, ask) = (self.layer(), self.asks_forces());
+        let borders: Vec<_> = (1..self.scratch.len()).map(|_| Border::new(&self.layers[0])).collect();
+        let mut behind = borders.iter();
+        let mut before = None;
         let slabs = self.slabs_of(ask, |start, count| {
             let (position, more_x) = core::mem::take(&mut x).split_at_mut(count * layer);
             let (velocity, more_v) = core::mem::take(&mut v).split_at_mut(count * layer);
             (x, v) = (more_x, more_v);
-            let beside = Default::default();
-            Move { motion, start, count, beside, position, velocity }
+            let borders = [before, behind.next()];
+            [_, before] = borders;
+            Move { motion, end: start + count, layer, borders, position, velocity }
         });
         march(slabs, steps)
     }
@@ -229,7 +236,8 @@ impl<R: Real, const D: usize> Model<R, D> {
     pub(super) fn note_lattice(&mut self, state: &State<R, D>) {
         let Self { lattice: Some(rows), overstretched, .. } = self else { return };
         let Some(position) = vectors(&state.position) else { return };
-        if run(rows.slabs_of(Ask::Lengths, |_, _| Measure { position })) {
+        let layer = rows.layer();
+        if run(rows.slabs_of(Ask::Lengths, |_, _| Measure { position, layer })) {
             *overstretched = R::splat(1.0);
         }
     }

@@ -1,14 +1,15 @@
 //! The way through the layers of a slab.
 
-use core::ops::Range;
+use core::{mem::swap, ops::Range};
 
 use bevy::tasks::ComputeTaskPool;
 
 use crate::mechanics::{Lanes, Real};
 
 use super::{
-    join::{Ask, LANES, Way, join},
-    layer::Layer,
+    columns::{Columns, LANES},
+    join::{Ask, Way, join},
+    layer::{Layer, Sums},
 };
 
 /// The springs of a grid.
@@ -16,19 +17,26 @@ use super::{
 pub(super) struct Grid<'a> {
     pub(super) within: &'a [Way],
     pub(super) onward: &'a [Way],
-    pub(super) masks: &'a [Vec<f64>],
-    /// How many layers there are, and of how many masses.
+    pub(super) masks: &'a [Columns<1>],
+    /// How many layers there are.
     pub(super) layers: usize,
-    pub(super) layer: usize,
 }
 
 /// Where layers come from, and what is done with them.
 pub(super) trait Task: Send {
-    /// Reads a layer that has these masses.
-    fn read(&self, into: &mut Layer, layer: usize, masses: Range<usize>, ask: Ask);
+    /// Brings a layer to where it feels the springs: one of the slab, or the one behind or before it.
+    fn read(&mut self, z: usize, layer: &mut Layer);
 
-    /// Uses the forces on a layer of the slab. All layers before it have been used, and the next one has been read.
-    fn write(&mut self, from: &mut Layer, masses: Range<usize>);
+    /// Uses the forces on a layer of the slab, and leaves the sums at zero. The layer before it has been read.
+    fn write(&mut self, z: usize, layer: &mut Layer, sums: &mut Sums);
+
+    /// Gives the next slab the sums of the springs that lead to its first layer from this one. Where nobody wants them they are lost.
+    fn hand_on(&mut self, _: &Columns<3>) {}
+
+    /// Whether the slab before has given its sums of the springs that lead to the first layer of this one. If not, they are computed once more.
+    fn take_over(&mut self, _: &mut Columns<3>) -> bool {
+        false
+    }
 }
 
 /// Some layers of a block.
@@ -36,15 +44,25 @@ pub(super) struct Slab<'a, T> {
     pub(super) grid: Grid<'a>,
     pub(super) ask: Ask,
     pub(super) range: Range<usize>,
-    pub(super) scratch: &'a mut [Layer; 2],
+    pub(super) layers: &'a mut [Layer],
+    pub(super) scratch: &'a mut Scratch,
     pub(super) task: T,
+}
+
+/// What a slab needs room for beside its layers.
+#[derive(Clone, Debug)]
+pub(super) struct Scratch {
+    /// A layer that belongs to another slab.
+    pub(super) beside: Layer,
+    /// Of the two layers at hand; zero but while they are.
+    pub(super) sums: [Sums; 2],
 }
 
 impl<T> Slab<'_, T> {
     /// The same, to be gone through once more afterwards.
     pub(super) fn again(&mut self) -> Slab<'_, &mut T> {
-        let Self { grid, ask, range, scratch, task } = self;
-        Slab { grid: *grid, ask: *ask, range: range.clone(), scratch, task }
+        let Self { grid, ask, range, layers, scratch, task } = self;
+        Slab { grid: *grid, ask: *ask, range: range.clone(), layers, scratch, task }
     }
 }
 
@@ -78,32 +96,52 @@ impl<T: Task> pulp::NullaryFnOnce for Slab<'_, T> {
 }
 
 impl<T: Task> Slab<'_, T> {
+    /// From the last layer to the first: what the next slab waits for comes first, and what the slab before has to give is wanted last.
     #[inline(always)]
     fn sweep(self, ask: Ask) -> bool {
-        let Self { grid: Grid { within, onward, masks, layers, layer }, range, scratch, mut task, .. } = self;
-        let mut too_long = Lanes::splat(0.0);
-        let [here, next] = scratch;
+        let Self { grid: Grid { within, onward, masks, layers: all }, range, layers, scratch, mut task, .. } = self;
+        let Scratch { beside, sums: [here, next] } = scratch;
         let (mut here, mut next) = (here, next);
-        let masses = |z: usize| z * layer..(z + 1) * layer;
-        // The springs from the layer before the first pull back at it.
-        let start = range.start.saturating_sub(1);
-        task.read(here, start, masses(start), ask);
-        for z in start..range.end {
-            if range.contains(&z) {
-                for way in within {
-                    join(ask, here, None, way, &masks[way.mask], &mut too_long);
-                }
-            }
-            if z + 1 < layers {
-                task.read(next, z + 1, masses(z + 1), ask);
+        let mut too_long = Lanes::splat(0.0);
+        let start = range.start;
+        for z in range.rev() {
+            let Some((layer, behind)) = layers[z - start..].split_first_mut() else { continue };
+            task.read(z, layer);
+            if z + 1 < all {
+                let (to, own) = match behind.first_mut() {
+                    Some(own) => (own, true),
+                    None => {
+                        task.read(z + 1, beside);
+                        (&mut *beside, false)
+                    }
+                };
                 for way in onward {
-                    join(ask, here, Some(next), way, &masks[way.mask], &mut too_long);
+                    join(ask, [layer, to], way, masks, &mut here.forward, &mut next.before, &mut too_long);
+                }
+                if ask != Ask::Lengths {
+                    if own {
+                        task.write(z + 1, to, next);
+                    } else {
+                        task.hand_on(&next.before);
+                        next.before.clear();
+                    }
                 }
             }
-            if ask != Ask::Lengths && range.contains(&z) {
-                task.write(here, masses(z));
+            for way in within {
+                join(ask, [layer, layer], way, masks, &mut here.forward, &mut here.within, &mut too_long);
             }
-            core::mem::swap(&mut here, &mut next);
+            swap(&mut here, &mut next);
+        }
+        let first = layers.first_mut().filter(|_| ask != Ask::Lengths);
+        if let Some(first) = first {
+            if start > 0 && !task.take_over(&mut next.before) {
+                task.read(start - 1, beside);
+                for way in onward {
+                    join(ask, [beside, first], way, masks, &mut here.forward, &mut next.before, &mut too_long);
+                }
+                here.forward.clear();
+            }
+            task.write(start, first, next);
         }
         (0..LANES).any(|lane| too_long.lane(lane) != 0.0)
     }

@@ -2,32 +2,42 @@
 
 use core::ops::Range;
 
-use super::{join::Ask, layer::Layer, sweep::Task};
+use super::{
+    columns::Columns,
+    join::Ask,
+    layer::{Layer, Sums},
+    march::Border,
+    sweep::Task,
+};
 
 /// Finds what accelerates the masses.
 pub(super) struct Accelerate<'a> {
+    pub(super) ask: Ask,
     pub(super) position: &'a [[f64; 3]],
     pub(super) velocity: &'a [[f64; 3]],
     pub(super) inverse_mass: &'a [f64],
     pub(super) gravity: f64,
     /// The first layer of the slab.
     pub(super) start: usize,
+    /// How many masses a layer has.
+    pub(super) layer: usize,
     /// Of the masses of the slab.
     pub(super) acceleration: &'a mut [[f64; 3]],
 }
 
 impl Task for Accelerate<'_> {
     #[inline(always)]
-    fn read(&self, into: &mut Layer, _: usize, masses: Range<usize>, ask: Ask) {
-        into.set(&self.position[masses.clone()], (ask == Ask::Damped).then(|| &self.velocity[masses]), 0.0);
+    fn read(&mut self, z: usize, layer: &mut Layer) {
+        let masses = masses(z, self.layer);
+        let velocity = (self.ask == Ask::Damped).then(|| &self.velocity[masses.clone()]);
+        layer.deal(&self.position[masses], velocity);
     }
 
     #[inline(always)]
-    fn write(&mut self, from: &mut Layer, masses: Range<usize>) {
-        let first = self.start * masses.len();
-        let own = &mut self.acceleration[masses.start - first..masses.end - first];
-        let inverse_mass = &self.inverse_mass[masses];
-        from.each_force(own.len(), |i, force| own[i] = accelerated(force, inverse_mass[i], self.gravity));
+    fn write(&mut self, z: usize, layer: &mut Layer, sums: &mut Sums) {
+        let own = &mut self.acceleration[masses(z - self.start, self.layer)];
+        let inverse_mass = &self.inverse_mass[masses(z, self.layer)];
+        layer.each_force(sums, |i, force| own[i] = accelerated(force, inverse_mass[i], self.gravity));
     }
 }
 
@@ -45,9 +55,6 @@ pub(in crate::mechanics) struct KickDrift {
     pub(in crate::mechanics) kept: f64,
 }
 
-/// Positions and velocities of a layer.
-pub(super) type Rows = (Vec<[f64; 3]>, Vec<[f64; 3]>);
-
 /// What moves the masses of a block, beside its springs.
 #[derive(Clone, Copy)]
 pub(super) struct Motion<'a> {
@@ -58,69 +65,90 @@ pub(super) struct Motion<'a> {
     pub(super) inverse_mass: &'a [f64],
 }
 
-/// Takes whole steps.
+/// Takes whole steps with layers that lie where they belong.
 pub(super) struct Move<'a> {
     pub(super) motion: Motion<'a>,
-    /// The first layer of the slab, and how many it has.
-    pub(super) start: usize,
-    pub(super) count: usize,
-    /// The layers before and behind the slab, which belong to others, as they were before the step.
-    pub(super) beside: [Rows; 2],
+    /// The layer behind the slab.
+    pub(super) end: usize,
+    /// How many masses a layer has.
+    pub(super) layer: usize,
+    /// To the slab before, and to the one behind.
+    pub(super) borders: [Option<&'a Border>; 2],
     /// Of the masses of the slab.
     pub(super) position: &'a mut [[f64; 3]],
     pub(super) velocity: &'a mut [[f64; 3]],
 }
 
 impl Move<'_> {
-    /// Copies the first or the last layer of the slab.
-    pub(super) fn hand_out(&self, which: usize, into: &mut Rows) {
-        let layer = self.position.len() / self.count;
-        let rows = if which == 0 { 0..layer } else { self.position.len() - layer..self.position.len() };
-        into.0.clear();
-        into.0.extend_from_slice(&self.position[rows.clone()]);
-        into.1.clear();
-        into.1.extend_from_slice(&self.velocity[rows]);
+    /// Deals the masses of the slab out to its layers.
+    pub(super) fn deal(&self, layers: &mut [Layer]) {
+        let start = self.end - layers.len();
+        for (i, layer) in layers.iter_mut().enumerate() {
+            let own = masses(i, self.layer);
+            layer.deal(&self.position[own.clone()], Some(&self.velocity[own]));
+            layer.weigh(&self.motion.inverse_mass[masses(start + i, self.layer)]);
+        }
+    }
+
+    /// Gathers them again.
+    pub(super) fn gather(&mut self, layers: &[Layer]) {
+        for (i, layer) in layers.iter().enumerate() {
+            let own = masses(i, self.layer);
+            layer.gather(&mut self.position[own.clone()], &mut self.velocity[own]);
+        }
     }
 }
 
 impl Task for &mut Move<'_> {
     #[inline(always)]
-    fn read(&self, into: &mut Layer, layer: usize, masses: Range<usize>, _: Ask) {
-        let (position, velocity) = if layer < self.start {
-            (&self.beside[0].0[..], &self.beside[0].1[..])
-        } else if layer >= self.start + self.count {
-            (&self.beside[1].0[..], &self.beside[1].1[..])
-        } else {
-            let first = self.start * masses.len();
-            let own = masses.start - first..masses.end - first;
-            (&self.position[own.clone()], &self.velocity[own])
-        };
-        into.set(position, Some(velocity), self.motion.rule.before);
+    fn read(&mut self, z: usize, layer: &mut Layer) {
+        match self.borders {
+            [_, Some(border)] if z == self.end => border.layer.receive(|first| core::mem::swap(layer, first)),
+            _ => layer.drift(self.motion.rule.before),
+        }
     }
 
     #[inline(always)]
-    fn write(&mut self, from: &mut Layer, masses: Range<usize>) {
-        let first = self.start * masses.len();
-        let own = masses.start - first..masses.end - first;
-        let Motion { rule, gravity, floor, inverse_mass } = self.motion;
-        from.kick(rule, &inverse_mass[masses], gravity, floor);
-        from.write(&mut self.position[own.clone()], &mut self.velocity[own]);
+    fn write(&mut self, _: usize, layer: &mut Layer, sums: &mut Sums) {
+        let Motion { rule, gravity, floor, .. } = self.motion;
+        layer.kick(rule, gravity, floor, sums);
+    }
+
+    #[inline(always)]
+    fn hand_on(&mut self, sums: &Columns<3>) {
+        if let [_, Some(border)] = self.borders {
+            border.sums.send(|into| into.copy(sums));
+        }
+    }
+
+    #[inline(always)]
+    fn take_over(&mut self, sums: &mut Columns<3>) -> bool {
+        let [border, _] = self.borders;
+        border.inspect(|border| border.sums.receive(|from| core::mem::swap(sums, from))).is_some()
     }
 }
 
 /// Only looks at lengths.
 pub(super) struct Measure<'a> {
     pub(super) position: &'a [[f64; 3]],
+    /// How many masses a layer has.
+    pub(super) layer: usize,
 }
 
 impl Task for Measure<'_> {
     #[inline(always)]
-    fn read(&self, into: &mut Layer, _: usize, masses: Range<usize>, _: Ask) {
-        into.set(&self.position[masses], None, 0.0);
+    fn read(&mut self, z: usize, layer: &mut Layer) {
+        layer.deal(&self.position[masses(z, self.layer)], None);
     }
 
     #[inline(always)]
-    fn write(&mut self, _: &mut Layer, _: Range<usize>) {}
+    fn write(&mut self, _: usize, _: &mut Layer, _: &mut Sums) {}
+}
+
+/// The masses of a layer.
+#[inline(always)]
+fn masses(z: usize, layer: usize) -> Range<usize> {
+    z * layer..(z + 1) * layer
 }
 
 /// What a force and gravity accelerate a mass with; nothing that is pinned.
