@@ -1,6 +1,6 @@
 //! Regular blocks, stepped without lists of their springs, against the general springs and on several threads.
 
-use std::process::Command;
+use std::{path::Path, process::Command};
 
 use bevy::math::DVec3;
 use wriggle::{
@@ -104,27 +104,35 @@ fn a_block_of_which_one_spring_differs_is_not_regular() {
 #[test]
 fn the_number_of_threads_changes_no_bit_of_a_block() {
     let folder = tempfile::TempDir::new().unwrap();
-    let file = folder.path().join("large.creature.ron");
     // Large enough for slabs of its layers: two of them with two threads, three with three.
-    std::fs::write(
-        &file,
-        "Creature(version: 1, body: Jelly(size: (24, 22, 25), tilt: 10, drop: 0.01,
-           neighbours: (edges: (stiffness: 1, damping: 0.1), faces: (stiffness: 1), cubes: (stiffness: 1, damping: 0.2))),
-         ground: Flat, gravity: 0.05)",
-    )
-    .unwrap();
-    let hash = |threads: &str| {
-        let file = file.to_str().unwrap();
-        let run = ["run", file, "--for", "3", "--dt", "0.1", "--threads", threads, "--json"];
-        let output = Command::new(env!("CARGO_BIN_EXE_wriggle")).args(run).output().unwrap();
+    let block = |name: &str, damping: [f64; 2]| {
+        let file = folder.path().join(name);
+        let [edges, cubes] = damping;
+        let text = format!(
+            "Creature(version: 1, body: Jelly(size: (24, 22, 25), tilt: 10, drop: 0.01,
+               neighbours: (edges: (stiffness: 1, damping: {edges:?}), faces: (stiffness: 1), cubes: (stiffness: 1, damping: {cubes:?}))),
+             ground: Flat, gravity: 0.05)"
+        );
+        std::fs::write(&file, text).unwrap();
+        file
+    };
+    let files = [block("damped.creature.ron", [0.1, 0.2]), block("stiff.creature.ron", [0.0, 0.0])];
+    let hash = |file: &Path, method: &str, threads: &str| {
+        let run = ["--for", "1", "--dt", "0.1", "--method", method, "--threads", threads, "--json"];
+        let output = Command::new(env!("CARGO_BIN_EXE_wriggle")).arg("run").arg(file).args(run).output().unwrap();
         assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
         let result: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
         (result["hash"].to_string(), result["threads"].as_u64())
     };
-    let (one, threads) = hash("1");
-    assert_eq!(threads, Some(1));
-    for threads in ["2", "3"] {
-        assert_eq!(hash(threads).0, one, "{threads} threads");
+    // What a slab tells the next: where masses are, where they are when they have drifted, and nothing.
+    for method in ["SemiImplicitEuler", "StormerVerlet", "RungeKutta4"] {
+        for file in &files {
+            let (one, threads) = hash(file, method, "1");
+            assert_eq!(threads, Some(1));
+            for threads in ["2", "3"] {
+                assert_eq!(hash(file, method, threads).0, one, "{} by {method} on {threads} threads", file.display());
+            }
+        }
     }
 }
 
