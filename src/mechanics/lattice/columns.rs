@@ -20,7 +20,6 @@ struct Line([f64; LANES]);
 #[derive(Clone, Debug)]
 pub(super) struct Columns<const N: usize> {
     lines: Vec<Line>,
-    /// How many numbers a column has.
     length: usize,
 }
 
@@ -34,14 +33,31 @@ impl<const N: usize> Columns<N> {
 
     #[inline(always)]
     pub(super) fn each(&self) -> [&[f64]; N] {
-        let mut columns = bytemuck::cast_slice(&self.lines).chunks_exact(self.length);
+        let mut columns = self.flat().chunks_exact(self.length);
         array::from_fn(|_| columns.next().unwrap_or_default())
     }
 
     #[inline(always)]
     pub(super) fn each_mut(&mut self) -> [&mut [f64]; N] {
-        let mut columns = bytemuck::cast_slice_mut(&mut self.lines).chunks_exact_mut(self.length);
+        let length = self.length;
+        let mut columns = self.flat_mut().chunks_exact_mut(length);
         array::from_fn(|_| columns.next().unwrap_or_default())
+    }
+
+    /// How many numbers a column has.
+    pub(super) fn length(&self) -> usize {
+        self.length
+    }
+
+    /// Column after column.
+    #[inline(always)]
+    pub(super) fn flat(&self) -> &[f64] {
+        bytemuck::cast_slice(&self.lines)
+    }
+
+    #[inline(always)]
+    pub(super) fn flat_mut(&mut self) -> &mut [f64] {
+        bytemuck::cast_slice_mut(&mut self.lines)
     }
 
     /// Becomes a copy of columns of the same length.
@@ -52,6 +68,31 @@ impl<const N: usize> Columns<N> {
     #[inline(always)]
     pub(super) fn clear(&mut self) {
         self.lines.fill(Line::zeroed());
+    }
+}
+
+/// The numbers from a place on.
+#[inline(always)]
+pub(super) fn eight(flat: &[f64], at: usize) -> Eight {
+    let mut vector = [0.0; LANES];
+    vector.copy_from_slice(&flat[at..at + LANES]);
+    vector.into()
+}
+
+/// The numbers from a row on in the first three of columns of this length.
+// Spelled out, as below: closures among vectors are not always inlined.
+#[inline(always)]
+pub(super) fn three(flat: &[f64], length: usize, row: usize) -> [Eight; 3] {
+    let block = &flat[row..row + 2 * length + LANES];
+    [eight(block, 0), eight(block, length), eight(block, 2 * length)]
+}
+
+/// Replaces the numbers from a row on in the first three of columns of this length.
+#[inline(always)]
+pub(super) fn put(flat: &mut [f64], length: usize, row: usize, [x, y, z]: [Eight; 3]) {
+    let block = &mut flat[row..row + 2 * length + LANES];
+    for (vector, at) in [(x, 0), (y, length), (z, 2 * length)] {
+        block[at..at + LANES].copy_from_slice(&<[f64; LANES]>::from(vector));
     }
 }
 

@@ -1,6 +1,6 @@
 //! One layer of a block, laid out for the inner loop.
 
-use core::iter::zip;
+use core::{iter::zip, ops::Range};
 
 use crate::mechanics::Real;
 
@@ -24,7 +24,7 @@ pub(super) struct Layer {
 /// The sums of the forces of springs on a layer.
 #[derive(Clone, Debug)]
 pub(super) struct Sums {
-    /// On the masses at which they begin.
+    /// On the masses at which they begin. Found as a whole, and not added to.
     pub(super) forward: Columns<3>,
     /// On the masses at which they end, from the same layer.
     pub(super) within: Columns<3>,
@@ -37,8 +37,8 @@ impl Sums {
         Self { forward: Columns::zeros(room), within: Columns::zeros(room), before: Columns::zeros(room) }
     }
 
+    /// Sets the sums back to zero.
     fn clear(&mut self) {
-        self.forward.clear();
         self.within.clear();
         self.before.clear();
     }
@@ -48,6 +48,12 @@ impl Layer {
     pub(super) fn new(room: usize, pad: usize, count: usize) -> Self {
         let (position, velocity, inverse_mass) = (Columns::zeros(room), Columns::zeros(room), Columns::zeros(room));
         Self { pad, count, position, velocity, inverse_mass }
+    }
+
+    /// The rows of the masses, a whole number of vectors.
+    #[inline(always)]
+    pub(super) fn rows(&self) -> Range<usize> {
+        self.pad..self.pad + self.count.next_multiple_of(LANES)
     }
 
     /// Puts the masses of a layer here.
@@ -97,25 +103,26 @@ impl Layer {
     }
 
     /// Kicks its masses, which stand where they are to feel the forces, and lets them drift on. What comes to be below a floor is put back on it and loses what of
-    /// its velocity leads down. The sums are zero afterwards.
+    /// its velocity leads down. The sums back are zero afterwards.
     #[inline(always)]
     pub(super) fn kick(&mut self, rule: KickDrift, gravity: f64, floor: bool, sums: &mut Sums) {
-        let rows = self.pad..self.pad + self.count.next_multiple_of(LANES);
+        let rows = self.rows();
         let [inverse_mass] = self.inverse_mass.each().map(|column| eights(column, &rows));
         let columns = zip(self.position.each_mut(), self.velocity.each_mut());
-        let sums = zip(sums.forward.each_mut(), zip(sums.within.each_mut(), sums.before.each_mut()));
+        let sums = zip(sums.forward.each(), zip(sums.within.each_mut(), sums.before.each_mut()));
         for (axis, ((x, v), (f, (w, b)))) in zip(columns, sums).enumerate() {
-            let columns = [x, v, f, w, b].map(|column| eights_mut(column, &rows));
+            let f = eights(f, &rows);
+            let columns = [x, v, w, b].map(|column| eights_mut(column, &rows));
             // Each on its own: a branch in the loop costs twice its time.
             match axis {
-                1 if floor => kick::<true>(rule, inverse_mass, gravity, columns),
-                1 => kick::<false>(rule, inverse_mass, gravity, columns),
-                _ => kick::<false>(rule, inverse_mass, 0.0, columns),
+                1 if floor => kick::<true>(rule, inverse_mass, gravity, f, columns),
+                1 => kick::<false>(rule, inverse_mass, gravity, f, columns),
+                _ => kick::<false>(rule, inverse_mass, 0.0, f, columns),
             }
         }
     }
 
-    /// Gives the force on each of its masses to `work`. The sums are zero afterwards.
+    /// Gives the force on each of its masses to `work`. The sums back are zero afterwards.
     #[inline(always)]
     pub(super) fn each_force(&self, sums: &mut Sums, mut work: impl FnMut(usize, [f64; 3])) {
         let masses = self.pad..self.pad + self.count;
@@ -134,17 +141,18 @@ fn cut(column: &mut [f64], pad: usize, count: usize) -> &mut [f64] {
     &mut column[pad..pad + count]
 }
 
-/// Kicks along one axis: positions, velocities and the three sums.
+/// Kicks along one axis: positions and velocities, by the sums forward, and back within the layer and from the one before.
 #[inline(always)]
 fn kick<const FLOOR: bool>(
     rule: KickDrift,
     inverse_mass: &[[f64; LANES]],
     gravity: f64,
-    [x, v, f, w, b]: [&mut [[f64; LANES]]; 5],
+    f: &[[f64; LANES]],
+    [x, v, w, b]: [&mut [[f64; LANES]]; 4],
 ) {
     let [dt, after, rate, kept] = [rule.dt, rule.after, rule.rate, rule.kept].map(Eight::splat);
     let (zero, gravity, count) = (Eight::splat(0.0), Eight::splat(gravity), inverse_mass.len());
-    let (x, v, f, w, b) = (&mut x[..count], &mut v[..count], &mut f[..count], &mut w[..count], &mut b[..count]);
+    let (x, v, f, w, b) = (&mut x[..count], &mut v[..count], &f[..count], &mut w[..count], &mut b[..count]);
     for i in 0..count {
         let inverse = Eight::from(inverse_mass[i]);
         let force = Eight::from(f[i]) + (Eight::from(w[i]) + Eight::from(b[i]));
@@ -160,7 +168,7 @@ fn kick<const FLOOR: bool>(
         } else {
             (x[i], v[i]) = (place.into(), speed.into());
         }
-        (f[i], w[i], b[i]) = (zero.into(), zero.into(), zero.into());
+        (w[i], b[i]) = (zero.into(), zero.into());
     }
 }
 

@@ -1,12 +1,12 @@
 //! Forces of a block on a regular grid: neighbours by where they are, eight springs at a time, layer by layer.
 //!
 //! The general springs look up the ends of each; here the neighbour along a way is always as many numbers further. Layers lie coordinate by coordinate; two are
-//! at hand at a time, and of each way to a neighbour all springs that begin in the lower one are computed side by side. A spring acts forward on the mass at which it begins and back
-//! on the other.
+//! at hand at a time, and the springs that begin at eight masses of the lower one are computed side by side, one way after the other. A spring acts forward on the mass
+//! at which it begins and back on the other.
 //!
-//! Three sums are kept of what a mass feels: forward, to the next layer and then within its own; back within its own; and back from the layer before; each in the order of
-//! [`Neighbours::ways`](crate::body::Neighbours::ways). They come together when all are complete. So a slab of layers comes to the same bits wherever it begins and ends, whoever computes
-//! the springs between two slabs, and threads may share the layers in any way.
+//! Three sums are kept of what a mass feels: forward, back within its layer, and back from the layer before. Each is in an order that depends on the mass's place in
+//! its layer alone, and they come together when all are complete. So a slab of layers comes to the same bits wherever it begins and ends, whoever computes the springs between two slabs, and threads may share the layers in any
+//! way.
 
 mod columns;
 mod join;
@@ -22,10 +22,10 @@ use crate::body::{Lattice, Neighbours};
 use super::{BodyParts, Model, Real, State, ground::ContactKind, model::LONGEST_STRETCH};
 
 use columns::{Columns, LANES};
-use join::{Ask, Way};
+use join::{Ask, Grid, Way};
 use layer::{Layer, Sums};
 use march::{Border, march};
-use sweep::{Grid, Scratch, Slab, run};
+use sweep::{Scratch, Slab, run};
 use tasks::{Accelerate, Measure, Motion, Move};
 
 pub(super) use tasks::KickDrift;
@@ -41,7 +41,7 @@ pub(super) struct LatticeRows {
     within: Vec<Way>,
     onward: Vec<Way>,
     /// For each of nine ways across a layer, 1 where a mass of the layer has a neighbour there, 0 elsewhere.
-    masks: Vec<Columns<1>>,
+    masks: Columns<9>,
     damped: bool,
     /// How long a spring of each kind is when the watch holds the body for exploded.
     longest: [f64; 3],
@@ -77,17 +77,15 @@ impl LatticeRows {
         // Room for a neighbour before the first mass and behind the last, whole vectors of them.
         let pad = (across + 1).next_multiple_of(LANES);
         let room = 2 * pad + layer.next_multiple_of(LANES) + LANES;
-        let mask = |way: usize| {
+        let mut masks = Columns::zeros(room);
+        for (way, mask) in masks.each_mut().into_iter().enumerate() {
             let (dx, dy) = (way % 3, way / 3);
-            let mut mask = Columns::zeros(room);
-            let [values] = mask.each_mut();
-            for (i, value) in values[pad..pad + layer].iter_mut().enumerate() {
+            for (i, value) in mask[pad..pad + layer].iter_mut().enumerate() {
                 // One more than where the neighbour is.
                 let (x, y) = (i % across + dx, i / across + dy);
                 *value = f64::from(u8::from((1..=across).contains(&x) && (1..=along).contains(&y)));
             }
-            mask
-        };
+        }
         let (mut within, mut onward, mut damped, mut longest) = (Vec::new(), Vec::new(), false, [0.0; 3]);
         for kind in Neighbours::ALL {
             let Some(spring) = body.springs.uniform(lattice.range(kind)) else { continue };
@@ -101,13 +99,14 @@ impl LatticeRows {
                     mask: (dx + 1 + 3 * (dy + 1)) as usize,
                     stiffness: spring.stiffness,
                     damping: spring.damping,
-                    rest_length: spring.rest_length,
+                    tension: spring.stiffness * spring.rest_length,
                     longest_square: longest[kind as usize] * longest[kind as usize],
                 };
                 if dz == 0 { within.push(way) } else { onward.push(way) }
             }
         }
-        let masks = (0..9).map(mask).collect();
+        // The sums of neighbours side by side overlap, and would have to wait for each other: ways to other rows come in between.
+        onward.sort_by_key(|way| (way.mask + 2) % 3);
         let rows = Self { lattice, within, onward, masks, damped, longest, layers: Vec::new(), scratch: Vec::new() };
         let slabs = rows.slabs();
         let layer = Layer::new(room, pad, layer);

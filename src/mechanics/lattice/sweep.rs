@@ -8,26 +8,16 @@ use crate::mechanics::{Lanes, Real};
 
 use super::{
     columns::{Columns, LANES},
-    join::{Ask, Way, join},
+    join::{Ask, Grid},
     layer::{Layer, Sums},
 };
-
-/// The springs of a grid.
-#[derive(Clone, Copy)]
-pub(super) struct Grid<'a> {
-    pub(super) within: &'a [Way],
-    pub(super) onward: &'a [Way],
-    pub(super) masks: &'a [Columns<1>],
-    /// How many layers there are.
-    pub(super) layers: usize,
-}
 
 /// Where layers come from, and what is done with them.
 pub(super) trait Task: Send {
     /// Brings a layer to where it feels the springs: one of the slab, or the one behind or before it.
     fn read(&mut self, z: usize, layer: &mut Layer);
 
-    /// Uses the forces on a layer of the slab, and leaves the sums at zero. The layer before it has been read.
+    /// Uses the forces on a layer of the slab, and leaves the sums back at zero. The layer before it has been read.
     fn write(&mut self, z: usize, layer: &mut Layer, sums: &mut Sums);
 
     /// Gives the next slab the sums of the springs that lead to its first layer from this one. Where nobody wants them they are lost.
@@ -54,7 +44,7 @@ pub(super) struct Slab<'a, T> {
 pub(super) struct Scratch {
     /// A layer that belongs to another slab.
     pub(super) beside: Layer,
-    /// Of the two layers at hand; zero but while they are.
+    /// Of the two layers at hand; what leads back is zero but while they are.
     pub(super) sums: [Sums; 2],
 }
 
@@ -99,7 +89,7 @@ impl<T: Task> Slab<'_, T> {
     /// From the last layer to the first: what the next slab waits for comes first, and what the slab before has to give is wanted last.
     #[inline(always)]
     fn sweep(self, ask: Ask) -> bool {
-        let Self { grid: Grid { within, onward, masks, layers: all }, range, layers, scratch, mut task, .. } = self;
+        let Self { grid, range, layers, scratch, mut task, .. } = self;
         let Scratch { beside, sums: [here, next] } = scratch;
         let (mut here, mut next) = (here, next);
         let mut too_long = Lanes::splat(0.0);
@@ -107,28 +97,21 @@ impl<T: Task> Slab<'_, T> {
         for z in range.rev() {
             let Some((layer, behind)) = layers[z - start..].split_first_mut() else { continue };
             task.read(z, layer);
-            if z + 1 < all {
-                let (to, own) = match behind.first_mut() {
-                    Some(own) => (own, true),
-                    None => {
-                        task.read(z + 1, beside);
-                        (&mut *beside, false)
-                    }
-                };
-                for way in onward {
-                    join(ask, [layer, to], way, masks, &mut here.forward, &mut next.before, &mut too_long);
-                }
+            let Sums { forward, within, .. } = here;
+            if z + 1 == grid.layers {
+                grid.join(ask, layer, None, forward, within, &mut too_long);
+            } else if let Some(to) = behind.first_mut() {
+                grid.join(ask, layer, Some((to, &mut next.before)), forward, within, &mut too_long);
                 if ask != Ask::Lengths {
-                    if own {
-                        task.write(z + 1, to, next);
-                    } else {
-                        task.hand_on(&next.before);
-                        next.before.clear();
-                    }
+                    task.write(z + 1, to, next);
                 }
-            }
-            for way in within {
-                join(ask, [layer, layer], way, masks, &mut here.forward, &mut here.within, &mut too_long);
+            } else {
+                task.read(z + 1, beside);
+                grid.join(ask, layer, Some((beside, &mut next.before)), forward, within, &mut too_long);
+                if ask != Ask::Lengths {
+                    task.hand_on(&next.before);
+                    next.before.clear();
+                }
             }
             swap(&mut here, &mut next);
         }
@@ -136,10 +119,15 @@ impl<T: Task> Slab<'_, T> {
         if let Some(first) = first {
             if start > 0 && !task.take_over(&mut next.before) {
                 task.read(start - 1, beside);
-                for way in onward {
-                    join(ask, [beside, first], way, masks, &mut here.forward, &mut next.before, &mut too_long);
-                }
-                here.forward.clear();
+                let onward = Grid { within: &[], ..grid };
+                onward.join(
+                    ask,
+                    beside,
+                    Some((first, &mut next.before)),
+                    &mut here.forward,
+                    &mut here.within,
+                    &mut too_long,
+                );
             }
             task.write(start, first, next);
         }
