@@ -137,6 +137,29 @@ fn the_number_of_threads_changes_no_bit_of_a_block() {
 }
 
 #[test]
+fn nothing_is_left_of_an_explosion_in_a_model_that_is_used_again() {
+    let body = moving((5, 3, 4), KINDS[3]);
+    let parts = parts(&body, Method::StormerVerlet);
+    let mut model = Model::<f64, 3>::new(&parts, [], 0.1);
+    let mut steps = |particles: &Particles| {
+        let mut state = State::new(particles.len());
+        state.set_lane(0, particles);
+        let timeline = Timeline { dt: 0.1, base_step: 0, base_time: 0.0 };
+        Advance { model: &mut model, state: &mut state, method: parts.method, timeline, first: 0, steps: 10 }.run();
+        state
+    };
+    let first = steps(&body.particles);
+    let mut torn = body.particles.clone();
+    for i in [3, 7, 14, 15, 59] {
+        let position = DVec3::new(1e200, -1e200, 1e300);
+        torn.set(ParticleId(i), Particle { position, ..body.particles.get(ParticleId(i)).unwrap() }).unwrap();
+    }
+    assert!(steps(&torn).position.iter().flatten().any(|x| !x.is_finite()));
+    let again = steps(&body.particles);
+    assert!(first.position == again.position && first.velocity == again.velocity);
+}
+
+#[test]
 fn two_equal_blocks_have_the_bits_of_one_alone() {
     use crate::support::{particles, stepping_app};
     use bevy::ecs::system::EntityCommand;

@@ -135,12 +135,6 @@ impl Layer {
     }
 }
 
-/// The masses of a layer.
-#[inline(always)]
-fn cut(column: &mut [f64], pad: usize, count: usize) -> &mut [f64] {
-    &mut column[pad..pad + count]
-}
-
 /// Kicks along one axis: positions and velocities, by the sums forward, and back within the layer and from the one before.
 #[inline(always)]
 fn kick<const FLOOR: bool>(
@@ -172,11 +166,15 @@ fn kick<const FLOOR: bool>(
     }
 }
 
-/// Deals the coordinates of vectors out to a column each.
+/// Deals the coordinates of vectors out to a column each. What the last vector has room for beside them becomes zero: something that is not finite may be left of an explosion.
 #[inline(always)]
 fn deal(vectors: &[[f64; 3]], columns: &mut Columns<3>, pad: usize) {
     let count = vectors.len();
-    let [x, y, z] = columns.each_mut().map(|column| cut(column, pad, count));
+    let [x, y, z] = columns.each_mut().map(|column| {
+        let (masses, beside) = column[pad..pad + count.next_multiple_of(LANES)].split_at_mut(count);
+        beside.fill(0.0);
+        masses
+    });
     for i in 0..count {
         x[i] = vectors[i][0];
         y[i] = vectors[i][1];
