@@ -58,8 +58,8 @@ fn resident_bytes() -> Option<u64> {
     Some(pages * 4096)
 }
 
-/// On a page of its own: where arrays lie to each other decides how fast a processor stores to one and loads from another.
-#[repr(align(4096))]
+/// From the start of a page: where arrays lie to each other decides how fast a processor stores to one and loads from another.
+#[repr(C, align(4096))]
 struct Arrays {
     ends: [[[f64; 8]; 13]; 13],
     sums: [[[f64; 8]; 13]; 6],

@@ -15,7 +15,7 @@ use bevy::math::DVec3;
 
 use crate::body::{MassDamping, ParticleId, Particles, SpineFriction, Spring, SpringId, Strand};
 
-use super::{BodyParts, rest_lengths};
+use super::{BodyParts, integrators::Method, rest_lengths};
 
 use lanczos::{FEW, MANY, largest_eigenvalue};
 
@@ -118,17 +118,19 @@ impl BodyParts<'_> {
         self.method.stability_limit(&stability_bound(self, time))
     }
 
-    /// The dt above which to expect that it explodes: the [limit](Self::stability_limit), but for explicit Euler and RK2 while springs are stretched. Those are sure
-    /// of no step then, because nothing damps a motion across a taut spring. Such motions are slow and grow slowly, or friction holds them; this is the limit
-    /// of what the springs damp.
+    /// The dt above which to expect that it explodes: the [limit](Self::stability_limit), but for explicit Euler and RK2 while springs are stretched. Nothing damps a motion
+    /// across a taut spring, so those two are sure of hardly any step then. Such motions are slow and grow slowly, or friction holds them; this is the limit
+    /// of what the springs damp. A body that nothing but taut springs holds for good, such as a pendulum, does grow below it.
     pub fn alarm_limit(&self, time: f64) -> f64 {
         let bound = stability_bound(self, time);
         let limit = self.method.stability_limit(&bound);
-        if limit > 0.0 {
-            return limit;
+        match self.method {
+            Method::ExplicitEuler | Method::RungeKutta2 => {
+                let [least_ratio, _] = ratios(self);
+                limit.max(self.method.stability_limit(&StabilityBound { least_ratio, ..bound }))
+            }
+            _ => limit,
         }
-        let [least_ratio, _] = ratios(self);
-        self.method.stability_limit(&StabilityBound { least_ratio, ..bound })
     }
 }
 

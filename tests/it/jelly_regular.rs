@@ -104,19 +104,17 @@ fn a_block_of_which_one_spring_differs_is_not_regular() {
 #[test]
 fn the_number_of_threads_changes_no_bit_of_a_block() {
     let folder = tempfile::TempDir::new().unwrap();
-    // Large enough for slabs of its layers: two of them with two threads, three with three.
-    let block = |name: &str, damping: [f64; 2]| {
+    let block = |name: &str, size: &str, damping: [f64; 2]| {
         let file = folder.path().join(name);
         let [edges, cubes] = damping;
         let text = format!(
-            "Creature(version: 1, body: Jelly(size: (24, 22, 25), tilt: 10, drop: 0.01,
+            "Creature(version: 1, body: Jelly(size: {size}, tilt: 10, drop: 0.01,
                neighbours: (edges: (stiffness: 1, damping: {edges:?}), faces: (stiffness: 1), cubes: (stiffness: 1, damping: {cubes:?}))),
              ground: Flat, gravity: 0.05)"
         );
         std::fs::write(&file, text).unwrap();
         file
     };
-    let files = [block("damped.creature.ron", [0.1, 0.2]), block("stiff.creature.ron", [0.0, 0.0])];
     let hash = |file: &Path, method: &str, threads: &str| {
         let run = ["--for", "1", "--dt", "0.1", "--method", method, "--threads", threads, "--json"];
         let output = Command::new(env!("CARGO_BIN_EXE_wriggle")).arg("run").arg(file).args(run).output().unwrap();
@@ -124,12 +122,20 @@ fn the_number_of_threads_changes_no_bit_of_a_block() {
         let result: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
         (result["hash"].to_string(), result["threads"].as_u64())
     };
-    // What a slab tells the next: where masses are, where they are when they have drifted, and nothing.
+    // A slab takes 4096 masses: two slabs with two threads, three with three; three of one layer; and three, the last of which has one layer, where four would do.
+    let (damped, stiff) = ([0.1, 0.2], [0.0, 0.0]);
+    let blocks = [
+        (block("damped.creature.ron", "(23, 23, 25)", damped), &["2", "3"][..]),
+        (block("stiff.creature.ron", "(23, 23, 25)", stiff), &["2", "3"]),
+        (block("layers.creature.ron", "(64, 64, 3)", damped), &["3"]),
+        (block("uneven.creature.ron", "(64, 64, 5)", stiff), &["4"]),
+    ];
+    // What a slab hears from the one behind: where masses are, where they are when they have drifted, and nothing.
     for method in ["SemiImplicitEuler", "StormerVerlet", "RungeKutta4"] {
-        for file in &files {
+        for (file, on) in &blocks {
             let (one, threads) = hash(file, method, "1");
             assert_eq!(threads, Some(1));
-            for threads in ["2", "3"] {
+            for threads in *on {
                 assert_eq!(hash(file, method, threads).0, one, "{} by {method} on {threads} threads", file.display());
             }
         }

@@ -2,7 +2,7 @@
 
 use bevy::math::DVec3;
 use wriggle::{
-    body::{Gravity, Particle, ParticleId, Particles, Spring, Springs},
+    body::{Gravity, MassDamping, Particle, ParticleId, Particles, Spring, Springs},
     cli::Headless,
     creatures::{
         Pose,
@@ -223,6 +223,20 @@ fn springs_that_are_taut_for_a_while_raise_no_alarm() {
             }
         }
         assert!(taut, "{scene} has no taut spring");
+    }
+    // Nor does damping by mass, however weak: its limit is that of the springs, and a larger step is still too large.
+    let particles = [DVec3::ZERO, DVec3::new(0.6, 0.8, 0.0)].map(Particle::at);
+    let particles = Particles::new(particles).unwrap();
+    let ends = [0, 1].map(ParticleId);
+    for mass_damping in [None, MassDamping::rate(1e-6).ok()] {
+        for (damping, least, most) in [(0.1, 0.05, 0.11), (0.0, 0.0, 1e-5)] {
+            let spring = Spring { ends, stiffness: 1.0, damping, rest_length: 0.9 };
+            let springs = Springs::new([spring], &particles).unwrap();
+            let parts = BodyParts { mass_damping, ..BodyParts::new(&particles, &springs, Method::ExplicitEuler) };
+            assert!(parts.stability_limit(0.0) < 1e-5);
+            let alarm = parts.alarm_limit(0.0);
+            assert!((least..=most).contains(&alarm), "{alarm} with the damping {damping}, {mass_damping:?} by mass");
+        }
     }
     // A body that no spring damps is still one that explicit Euler cannot step.
     let undamped = Worm { damping: 0.0, drag: 0.0, method: Method::ExplicitEuler, ..Worm::GARDEN }.body();

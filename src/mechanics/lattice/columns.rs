@@ -80,7 +80,7 @@ pub(super) fn eight(flat: &[f64], at: usize) -> Eight {
 }
 
 /// The numbers from a row on in the first three of columns of this length.
-// Spelled out, as below: closures among vectors are not always inlined.
+// Spelled out, as in the loop that uses it: closures among vectors are not always inlined.
 #[inline(always)]
 pub(super) fn three(flat: &[f64], length: usize, row: usize) -> [Eight; 3] {
     let block = &flat[row..row + 2 * length + LANES];

@@ -48,8 +48,8 @@ pub(super) struct Grid<'a> {
 }
 
 impl Grid<'_> {
-    /// Adds the forces of all springs that begin in `layer` back on the masses at which they end, of this layer and of the next one. `forward` becomes the sums on the masses at
-    /// which they begin, `too_long` 1 where a spring is not shorter than its longest.
+    /// Adds the forces of all springs that begin in `layer` back on the masses at which they end, of this layer and of the next one. `forward` becomes the sums on the
+    /// masses at which they begin, `too_long` 1 where a spring is not shorter than its longest.
     ///
     /// Of eight masses all springs come one after the other, so that what belongs to the eight stays in registers.
     #[inline(always)]
@@ -73,16 +73,16 @@ impl Grid<'_> {
         for row in layer.rows().step_by(LANES) {
             let position = three(position, length, row);
             let velocity = if ask == Ask::Damped { three(velocity, length, row) } else { position };
-            let mut eight = Springs { ask, row, length, masks, position, velocity, sum: [Eight::splat(0.0); 3] };
+            let mut springs = Springs { ask, row, length, masks, position, velocity, sum: [Eight::splat(0.0); 3] };
             if let Some(next) = &mut next {
                 for way in self.onward {
-                    eight.pull(way, next, too_long);
+                    springs.pull(way, next, too_long);
                 }
             }
             for way in self.within {
-                eight.pull(way, &mut own, too_long);
+                springs.pull(way, &mut own, too_long);
             }
-            put(forward, length, row, eight.sum);
+            put(forward, length, row, springs.sum);
         }
     }
 }

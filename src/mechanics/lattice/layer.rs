@@ -37,7 +37,7 @@ impl Sums {
         Self { forward: Columns::zeros(room), within: Columns::zeros(room), before: Columns::zeros(room) }
     }
 
-    /// Sets the sums back to zero.
+    /// Sets the sums of what springs pull back with to zero.
     fn clear(&mut self) {
         self.within.clear();
         self.before.clear();
@@ -80,11 +80,8 @@ impl Layer {
 
     /// Becomes what another layer of the block will be when it has drifted for so long; with its velocity where that is asked for.
     pub(super) fn foresee(&mut self, other: &Self, reach: f64, velocity: bool) {
-        for ((to, x), v) in zip(self.position.each_mut(), other.position.each()).zip(other.velocity.each()) {
-            for ((to, x), v) in zip(to, x).zip(v) {
-                *to = *x + *v * reach;
-            }
-        }
+        self.position.copy(&other.position);
+        drift(&mut self.position, &other.velocity, reach);
         if velocity {
             self.velocity.copy(&other.velocity);
         }
@@ -93,17 +90,11 @@ impl Layer {
     /// Moves its masses on for so long.
     #[inline(always)]
     pub(super) fn drift(&mut self, reach: f64) {
-        if reach > 0.0 {
-            for (position, velocity) in zip(self.position.each_mut(), self.velocity.each()) {
-                for (x, v) in zip(position, velocity) {
-                    *x += *v * reach;
-                }
-            }
-        }
+        drift(&mut self.position, &self.velocity, reach);
     }
 
     /// Kicks its masses, which stand where they are to feel the forces, and lets them drift on. What comes to be below a floor is put back on it and loses what of
-    /// its velocity leads down. The sums back are zero afterwards.
+    /// its velocity leads down. What springs pull back with is zero afterwards.
     #[inline(always)]
     pub(super) fn kick(&mut self, rule: KickDrift, gravity: f64, floor: bool, sums: &mut Sums) {
         let rows = self.rows();
@@ -122,7 +113,7 @@ impl Layer {
         }
     }
 
-    /// Gives the force on each of its masses to `work`. The sums back are zero afterwards.
+    /// Gives the force on each of its masses to `work`. What springs pull back with is zero afterwards.
     #[inline(always)]
     pub(super) fn each_force(&self, sums: &mut Sums, mut work: impl FnMut(usize, [f64; 3])) {
         let masses = self.pad..self.pad + self.count;
@@ -166,7 +157,19 @@ fn kick<const FLOOR: bool>(
     }
 }
 
-/// Deals the coordinates of vectors out to a column each. What the last vector has room for beside them becomes zero: something that is not finite may be left of an explosion.
+#[inline(always)]
+fn drift(position: &mut Columns<3>, velocity: &Columns<3>, reach: f64) {
+    if reach > 0.0 {
+        for (position, velocity) in zip(position.each_mut(), velocity.each()) {
+            for (x, v) in zip(position, velocity) {
+                *x += *v * reach;
+            }
+        }
+    }
+}
+
+/// Deals the coordinates of vectors out to a column each. What the last vector has room for beside them becomes zero: something that is not finite may be left of an
+/// explosion.
 #[inline(always)]
 fn deal(vectors: &[[f64; 3]], columns: &mut Columns<3>, pad: usize) {
     let count = vectors.len();

@@ -17,8 +17,11 @@ use super::{columns::Columns, join::Ask, layer::Layer, sweep::Slab, tasks::Move}
 /// Tasks of a pool would not do: each step would wake its threads anew, which takes as long as the step of a small block, and a task that waits for another keeps
 /// its thread from it.
 pub(super) fn march(mut slabs: Vec<Slab<'_, Move<'_>>>, steps: u64) -> bool {
+    // Where the system has no thread for a slab, those that have begun must not wait for it.
+    let closing: Vec<_> = slabs.iter().map(|slab| Closing(slab.task.borders)).collect();
     let Some((first, others)) = slabs.split_first_mut() else { return false };
     thread::scope(|scope| {
+        let _closing = closing;
         let others: Vec<_> = others.iter_mut().map(|slab| scope.spawn(move || slab.march(steps))).collect();
         let found = first.march(steps);
         others.into_iter().fold(found, |found, other| found | other.join().unwrap_or_else(|panic| resume_unwind(panic)))
@@ -57,7 +60,7 @@ impl Border {
     }
 }
 
-/// Room for one thing that is sent over and over. The sender hears from the receiver before it sends the next, so that none is lost.
+/// Room for one thing that is sent over and over. Whoever sends must have heard from the receiver before the next: here layers and sums answer each other.
 pub(super) struct Post<T> {
     item: Mutex<T>,
     sent: AtomicU64,
@@ -86,10 +89,10 @@ impl<T> Post<T> {
         /// Longer than slabs differ, so that a thread gives way only where there are more threads than cores.
         const SPINS: u32 = 4000;
         let received = self.received.fetch_add(1, Ordering::Relaxed);
-        let mut spins = 0;
+        let mut spins = 0_u32;
         while self.sent.load(Ordering::Acquire) <= received {
             assert!(!self.closed.load(Ordering::Relaxed), "the thread of a neighbouring slab has panicked");
-            spins += 1;
+            spins = spins.saturating_add(1);
             if spins < SPINS { hint::spin_loop() } else { thread::yield_now() }
         }
         fetch(&mut self.item.lock().unwrap_or_else(PoisonError::into_inner));

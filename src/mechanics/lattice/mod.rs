@@ -5,8 +5,8 @@
 //! at which it begins and back on the other.
 //!
 //! Three sums are kept of what a mass feels: forward, back within its layer, and back from the layer before. Each is in an order that depends on the mass's place in
-//! its layer alone, and they come together when all are complete. So a slab of layers comes to the same bits wherever it begins and ends, whoever computes the springs between two slabs, and threads may share the layers in any
-//! way.
+//! its layer alone, and they come together when all are complete. So a slab of layers comes to the same bits wherever it begins and ends, whoever computes the
+//! springs between two slabs, and threads may share the layers in any way.
 
 mod columns;
 mod join;
@@ -32,6 +32,9 @@ pub(super) use tasks::KickDrift;
 
 /// A thread is worth its start for so many particles.
 const PARTICLES_A_THREAD: usize = 4096;
+
+/// So many layers are at hand at a time. What is gone through once needs room for no more, and stays in the cache.
+const AT_HAND: usize = 2;
 
 /// A block as the force loop reads it.
 #[derive(Clone, Debug)]
@@ -105,8 +108,9 @@ impl LatticeRows {
                 if dz == 0 { within.push(way) } else { onward.push(way) }
             }
         }
-        // The sums of neighbours side by side overlap, and would have to wait for each other: ways to other rows come in between.
-        onward.sort_by_key(|way| (way.mask + 2) % 3);
+        // Sums of neighbours side by side overlap, and would have to wait for each other; so ways to other rows come in between: first those straight on, then to either side.
+        let side = |way: &Way| [2, 0, 1][way.mask % 3];
+        onward.sort_by_key(side);
         let rows = Self { lattice, within, onward, masks, damped, longest, layers: Vec::new(), scratch: Vec::new() };
         let slabs = rows.slabs();
         let layer = Layer::new(room, pad, layer);
@@ -129,13 +133,19 @@ impl LatticeRows {
         })
     }
 
-    /// Parts the layers into slabs, each with its scratch, its first layer and how many it has. `task` makes what is done with each.
-    fn slabs_of<'a, T>(&'a mut self, ask: Ask, mut task: impl FnMut(usize, usize) -> T) -> Vec<Slab<'a, T>> {
+    /// Parts the layers into slabs, each with its scratch and room for `at_hand` layers. `task` makes what is done with each from its first layer and how many it has.
+    fn slabs_of<'a, T>(
+        &'a mut self,
+        ask: Ask,
+        at_hand: usize,
+        mut task: impl FnMut(usize, usize) -> T,
+    ) -> Vec<Slab<'a, T>> {
         let Self { within, onward, masks, layers, scratch, .. } = self;
         let grid = Grid { within, onward, masks, layers: layers.len() };
         let share = layers.len().div_ceil(scratch.len());
         let slabs = layers.chunks_mut(share).zip(scratch).enumerate().map(|(i, (layers, scratch))| {
             let (start, count) = (i * share, layers.len());
+            let layers = &mut layers[..count.min(at_hand)];
             Slab { grid, ask, range: start..start + count, layers, scratch, task: task(start, count) }
         });
         slabs.collect()
@@ -151,7 +161,7 @@ impl LatticeRows {
         acceleration: &mut [[f64; 3]],
     ) -> bool {
         let (layer, ask, mut left) = (self.layer(), self.asks_forces(), acceleration);
-        run(self.slabs_of(ask, |start, count| {
+        run(self.slabs_of(ask, AT_HAND, |start, count| {
             let (acceleration, rest) = core::mem::take(&mut left).split_at_mut(count * layer);
             left = rest;
             Accelerate { ask, position, velocity, inverse_mass, gravity, start, layer, acceleration }
@@ -164,7 +174,7 @@ impl LatticeRows {
         let borders: Vec<_> = (1..self.scratch.len()).map(|_| Border::new(&self.layers[0])).collect();
         let mut behind = borders.iter();
         let mut before = None;
-        let slabs = self.slabs_of(ask, |start, count| {
+        let slabs = self.slabs_of(ask, usize::MAX, |start, count| {
             let (position, more_x) = core::mem::take(&mut x).split_at_mut(count * layer);
             let (velocity, more_v) = core::mem::take(&mut v).split_at_mut(count * layer);
             (x, v) = (more_x, more_v);
@@ -236,7 +246,7 @@ impl<R: Real, const D: usize> Model<R, D> {
         let Self { lattice: Some(rows), overstretched, .. } = self else { return };
         let Some(position) = vectors(&state.position) else { return };
         let layer = rows.layer();
-        if run(rows.slabs_of(Ask::Lengths, |_, _| Measure { position, layer })) {
+        if run(rows.slabs_of(Ask::Lengths, AT_HAND, |_, _| Measure { position, layer })) {
             *overstretched = R::splat(1.0);
         }
     }

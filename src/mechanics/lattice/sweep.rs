@@ -14,13 +14,13 @@ use super::{
 
 /// Where layers come from, and what is done with them.
 pub(super) trait Task: Send {
-    /// Brings a layer to where it feels the springs: one of the slab, or the one behind or before it.
+    /// Brings a layer to where it feels the springs, once in a sweep: one of the slab, or the one behind it, or before it where that is not [taken over](Self::take_over).
     fn read(&mut self, z: usize, layer: &mut Layer);
 
-    /// Uses the forces on a layer of the slab, and leaves the sums back at zero. The layer before it has been read.
+    /// Uses the forces on a layer of the slab, which are complete, and sets the sums of what springs pull back with to zero.
     fn write(&mut self, z: usize, layer: &mut Layer, sums: &mut Sums);
 
-    /// Gives the next slab the sums of the springs that lead to its first layer from this one. Where nobody wants them they are lost.
+    /// Gives the slab behind the sums of the springs that lead to its first layer from this one. Where nobody wants them they are lost.
     fn hand_on(&mut self, _: &Columns<3>) {}
 
     /// Whether the slab before has given its sums of the springs that lead to the first layer of this one. If not, they are computed once more.
@@ -34,6 +34,7 @@ pub(super) struct Slab<'a, T> {
     pub(super) grid: Grid<'a>,
     pub(super) ask: Ask,
     pub(super) range: Range<usize>,
+    /// Room for all of its layers, or for two that are at hand.
     pub(super) layers: &'a mut [Layer],
     pub(super) scratch: &'a mut Scratch,
     pub(super) task: T,
@@ -86,21 +87,25 @@ impl<T: Task> pulp::NullaryFnOnce for Slab<'_, T> {
 }
 
 impl<T: Task> Slab<'_, T> {
-    /// From the last layer to the first: what the next slab waits for comes first, and what the slab before has to give is wanted last.
+    /// From the last layer to the first: what the slab behind waits for comes first, and what the slab before has to give is wanted last.
     #[inline(always)]
     fn sweep(self, ask: Ask) -> bool {
         let Self { grid, range, layers, scratch, mut task, .. } = self;
         let Scratch { beside, sums: [here, next] } = scratch;
         let (mut here, mut next) = (here, next);
         let mut too_long = Lanes::splat(0.0);
-        let start = range.start;
+        let (start, end) = (range.start, range.end);
         for z in range.rev() {
-            let Some((layer, behind)) = layers[z - start..].split_first_mut() else { continue };
+            let [at, after] = [z - start, z - start + 1].map(|i| i % layers.len());
+            let (layer, behind) = match layers.get_disjoint_mut([at, after]) {
+                Ok([layer, behind]) if z + 1 < end => (layer, Some(behind)),
+                _ => (&mut layers[at], None),
+            };
             task.read(z, layer);
             let Sums { forward, within, .. } = here;
             if z + 1 == grid.layers {
                 grid.join(ask, layer, None, forward, within, &mut too_long);
-            } else if let Some(to) = behind.first_mut() {
+            } else if let Some(to) = behind {
                 grid.join(ask, layer, Some((to, &mut next.before)), forward, within, &mut too_long);
                 if ask != Ask::Lengths {
                     task.write(z + 1, to, next);
