@@ -117,10 +117,11 @@ impl Layer {
     #[inline(always)]
     pub(super) fn each_force(&self, sums: &mut Sums, mut work: impl FnMut(usize, [f64; 3])) {
         let masses = self.pad..self.pad + self.count;
-        let [f, w, b] = [&sums.forward, &sums.within, &sums.before]
-            .map(|columns| columns.each().map(|column| &column[masses.clone()]));
+        let [f0, f1, f2] = sums.forward.each().map(|column| &column[masses.clone()]);
+        let [w0, w1, w2] = sums.within.each().map(|column| &column[masses.clone()]);
+        let [b0, b1, b2] = sums.before.each().map(|column| &column[masses.clone()]);
         for i in 0..self.count {
-            work(i, [0, 1, 2].map(|axis| f[axis][i] + (w[axis][i] + b[axis][i])));
+            work(i, [f0[i] + (w0[i] + b0[i]), f1[i] + (w1[i] + b1[i]), f2[i] + (w2[i] + b2[i])]);
         }
         sums.clear();
     }
