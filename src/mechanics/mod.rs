@@ -16,6 +16,7 @@ mod friction;
 mod ground;
 pub mod integrators;
 mod lattice;
+pub(crate) mod linear;
 pub mod metrics;
 mod model;
 mod pull;

@@ -104,6 +104,11 @@ impl<'a> BodyParts<'a> {
         self.gravity.is_none() && self.ground.is_none() && level(y) && level(z) && still(vy) && still(vz)
     }
 
+    /// What is left of it without friction, contact and gravity and with its muscles at rest.
+    pub(crate) fn bare(&self) -> Self {
+        Self { muscles: None, waves: None, friction: None, coulomb: None, gravity: None, ground: None, ..*self }
+    }
+
     /// Whether it gains from being stepped side by side with bodies of equal topology.
     pub fn side_by_side(&self) -> bool {
         self.method.side_by_side()

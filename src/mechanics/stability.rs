@@ -10,12 +10,13 @@
 //!   of the three, and the least of them counts.
 
 mod lanczos;
+mod limit;
 
 use bevy::math::DVec3;
 
 use crate::body::{MassDamping, ParticleId, Particles, SpineFriction, Spring, SpringId, Strand};
 
-use super::{BodyParts, integrators::Method, rest_lengths};
+use super::{BodyParts, rest_lengths};
 
 use lanczos::{FEW, MANY, largest_eigenvalue};
 
@@ -108,29 +109,6 @@ impl StabilityBound {
             _ => 2.0 / most,
         };
         limit(stiffness, least).min(limit(stiffness, most)).min(alone)
-    }
-}
-
-impl BodyParts<'_> {
-    /// The largest dt at which the body's method is stable in its present pose, with its rest lengths as at `time`: never above the true limit of
-    /// the linearised body. Infinite for a body that cannot oscillate.
-    pub fn stability_limit(&self, time: f64) -> f64 {
-        self.method.stability_limit(&stability_bound(self, time))
-    }
-
-    /// The dt above which to expect that it explodes: the [limit](Self::stability_limit), but for explicit Euler and RK2 while springs are stretched. Nothing damps a motion
-    /// across a taut spring, so those two are sure of hardly any step then. Such motions are slow and grow slowly, or friction holds them; this is the limit
-    /// of what the springs damp. A body that nothing but taut springs holds for good, such as a pendulum, does grow below it.
-    pub fn alarm_limit(&self, time: f64) -> f64 {
-        let bound = stability_bound(self, time);
-        let limit = self.method.stability_limit(&bound);
-        match self.method {
-            Method::ExplicitEuler | Method::RungeKutta2 => {
-                let [least_ratio, _] = ratios(self);
-                limit.max(self.method.stability_limit(&StabilityBound { least_ratio, ..bound }))
-            }
-            _ => limit,
-        }
     }
 }
 

@@ -6,7 +6,7 @@
 
 use faer::Col;
 
-use super::linear::Linear;
+use crate::mechanics::linear::Linear;
 
 /// How many steps are looked at first, and how many where that does not settle it; in windows of a quarter.
 const STEPS: [usize; 2] = [1000, 4000];

@@ -1,8 +1,6 @@
 //! A method's step near a pose, linearised by taking it from disturbed poses.
 
-use crate::mechanics::{Advance, BodyParts, Model, State, Timeline};
-
-use super::linear::{Linear, bare};
+use crate::mechanics::{Advance, BodyParts, Model, State, Timeline, linear::Linear};
 
 /// How large disturbances are, in the shortest rest length: on an axis, where springs are linear, and in space.
 const DISTURBANCE: [f64; 2] = [1e-3, 1e-5];
@@ -22,7 +20,7 @@ pub(super) struct LinearisedStep<'a, const D: usize> {
 
 impl<'a, const D: usize> LinearisedStep<'a, D> {
     pub(super) fn new(body: &BodyParts<'a>, linear: &'a Linear, dt: f64) -> Self {
-        let body = bare(body);
+        let body = body.bare();
         let rest = body.springs.iter().map(|spring| spring.rest_length).fold(f64::INFINITY, f64::min);
         let mut pose = State::new(body.particles.len());
         pose.set_lane(0, body.particles);

@@ -6,11 +6,9 @@
 
 mod alike;
 mod iterated;
-mod linear;
 mod linearised_step;
 mod predicted;
 mod scene;
-mod search;
 mod six;
 mod step_matrix;
 

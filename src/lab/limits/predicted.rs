@@ -6,26 +6,22 @@
 //!   λ_max(h²K + 2hC) ≤ 4 − 2λ, with any K and C. Leapfrog's centred damping leaves λ_max(h²K) ≤ 4.
 //!   Where rest lengths follow the pose K is not symmetric, and the formula is iterated with the matrices.
 //! - **polynomials** (explicit Runge–Kutta methods): stable exactly while |R(hμ)| ≤ 1, R(z) = Σ zⁿ/n!, for all roots μ of the
-//!   quadratic eigenvalue problem μ² + μC + K.
+//!   [quadratic eigenvalue problem](polynomial_limit) μ² + μC + K.
 
-use faer::{Col, Mat, Scale, c64, linalg::solvers::Solve};
+use faer::{Col, Mat, Scale, linalg::solvers::Solve};
 
-use crate::mechanics::{BodyParts, integrators::Method};
-
-use super::{
-    iterated,
-    linear::{Linear, spectrum},
-    search::{MOST, first_unstable},
+use crate::mechanics::{
+    BodyParts,
+    integrators::Method,
+    linear::{Linear, MOST, first_unstable, polynomial_limit, spectrum},
 };
 
-/// What rounding may add to a growth of 1.
-const ROUNDING: f64 = 1e-11;
+use super::iterated;
+
 /// Limits are found to this part of themselves.
 const PRECISION: f64 = 1e-9;
 /// The same where a formula is iterated.
 const ROUGH_PRECISION: f64 = 1e-3;
-/// A root whose damping is below this part of it is not damped.
-const UNDAMPED: f64 = 1e-9;
 
 /// The largest stable step of the body's method, from the eigenvalues of the body in its present pose, without friction, contact and gravity and
 /// with its muscles at rest. Infinite where no step is unstable; nothing where no formula is known for the method, or the
@@ -36,9 +32,9 @@ pub fn predicted_limit(body: &BodyParts<'_>) -> Option<f64> {
         Method::SemiImplicitEuler | Method::StormerVerlet | Method::DampedVerlet | Method::Leapfrog => {
             kicks(&linear()?, body.method)
         }
-        Method::ExplicitEuler => polynomial(&linear()?, 1),
-        Method::RungeKutta2 => polynomial(&linear()?, 2),
-        Method::RungeKutta4 => polynomial(&linear()?, 4),
+        Method::ExplicitEuler => polynomial_limit(&linear()?, 1),
+        Method::RungeKutta2 => polynomial_limit(&linear()?, 2),
+        Method::RungeKutta4 => polynomial_limit(&linear()?, 4),
         Method::ImplicitMidpoint | Method::ImplicitEuler | Method::Xpbd | Method::ExactFlow => Some(f64::INFINITY),
     }
 }
@@ -107,86 +103,4 @@ fn kick_is_calm(linear: &Linear, kick: Kick, h: f64) -> Option<bool> {
         let positions = positions.iter().zip(velocities.iter()).map(|(x, v)| x + h / time * v);
         Some(positions.chain(velocities.iter().copied()).collect())
     })
-}
-
-fn polynomial(linear: &Linear, order: u32) -> Option<f64> {
-    let per_step = matches!(linear.mass_damping, Some(crate::body::MassDamping::PerStep(_)));
-    let fixed = if per_step { None } else { Some(roots(linear, 1.0)?) };
-    let undamped = |root: &c64| root.re.abs() <= UNDAMPED * root.norm();
-    // Methods of order 1 and 2 let every oscillation grow that is not damped.
-    if order < 3 && fixed.as_ref().is_some_and(|roots| roots.iter().any(|root| root.norm() > 0.0 && undamped(root))) {
-        return Some(0.0);
-    }
-    let mut failed = false;
-    // A coarser search could step over a small limit of weak damping.
-    let limit = first_unstable(linear.rate, [1e-3, MOST], PRECISION, |h| {
-        let now = if fixed.is_some() { None } else { roots(linear, h) };
-        let Some(roots) = fixed.as_ref().or(now.as_ref()) else {
-            failed = true;
-            return false;
-        };
-        roots.iter().all(|&root| amplification(root * h, order) <= 1.0 + ROUNDING)
-    });
-    (!failed).then_some(limit)
-}
-
-/// |Σ zⁿ/n!| up to `order`.
-fn amplification(z: c64, order: u32) -> f64 {
-    let mut sum = c64::new(1.0, 0.0);
-    for n in (1..=order).rev() {
-        sum = c64::new(1.0, 0.0) + z * sum * (1.0 / f64::from(n));
-    }
-    sum.norm()
-}
-
-/// The roots of μ² + μC + K with the damping by mass that it has at steps of `dt`, without those of what nothing moves.
-fn roots(linear: &Linear, dt: f64) -> Option<Vec<c64>> {
-    let (count, rate) = (linear.stiffness.nrows(), linear.mass_rate(dt));
-    let mut roots = match modes(linear) {
-        Some(modes) => modes.into_iter().flat_map(|(stiffness, damping)| pair(stiffness, damping + rate)).collect(),
-        None => {
-            let damping = |i: usize, j: usize| linear.damping[(i, j)] + if i == j { rate } else { 0.0 };
-            let matrix = Mat::from_fn(2 * count, 2 * count, |i, j| match (i < count, j < count) {
-                (true, true) => 0.0,
-                (true, false) => f64::from(u8::from(i + count == j)),
-                (false, true) => -linear.stiffness[(i - count, j)],
-                (false, false) => -damping(i - count, j - count),
-            });
-            matrix.eigenvalues().ok()?
-        }
-    };
-    let fastest = roots.iter().map(|root| root.norm()).fold(0.0, f64::max);
-    roots.retain(|root| root.norm() > 1e-6 * fastest);
-    if linear.free.ncols() > 0 && rate > 0.0 {
-        roots.push(c64::new(-rate, 0.0));
-    }
-    Some(roots)
-}
-
-/// κ and γ of every mode, where the modes are damped one by one: C is a multiple of K.
-fn modes(linear: &Linear) -> Option<Vec<(f64, f64)>> {
-    let count = linear.stiffness.nrows();
-    let trace = |matrix: &Mat<f64>| (0..count).map(|i| matrix[(i, i)]).sum::<f64>();
-    let (stiffness, damping) = (trace(&linear.stiffness), trace(&linear.damping));
-    if stiffness <= 0.0 {
-        return None;
-    }
-    let ratio = damping / stiffness;
-    let small = 1e-10 * stiffness.max(damping);
-    let same = |i, j| (linear.damping[(i, j)] - ratio * linear.stiffness[(i, j)]).abs() <= small;
-    let proportional = linear.symmetric && (0..count).all(|i| (0..count).all(|j| same(i, j)));
-    let values = if proportional { spectrum(&linear.stiffness)? } else { return None };
-    Some(values.into_iter().map(|stiffness| (stiffness, ratio * stiffness)).collect())
-}
-
-/// The roots of μ² + γμ + κ.
-fn pair(stiffness: f64, damping: f64) -> [c64; 2] {
-    let (half, square) = (0.5 * damping, 0.25 * damping * damping - stiffness);
-    let root = square.abs().sqrt();
-    if square < 0.0 {
-        return [c64::new(-half, root), c64::new(-half, -root)];
-    }
-    // The slow root as κ over the fast one: their difference would cancel.
-    let fast = half + root;
-    [c64::new(-fast, 0.0), c64::new(if fast > 0.0 { -stiffness / fast } else { 0.0 }, 0.0)]
 }

@@ -4,10 +4,14 @@ use bevy::math::DVec3;
 
 use crate::{
     body::{Muscles, Particles, TravelingWaves},
-    mechanics::{Advance, BodyParts, Model, State, Timeline, elastic_energy, kinetic_energy, momentum},
+    mechanics::{
+        Advance, BodyParts, Model, State, Timeline, elastic_energy, kinetic_energy,
+        linear::{Linear, bisect},
+        momentum,
+    },
 };
 
-use super::{NEAR, is_apart, linear::Linear, search::bisect};
+use super::{NEAR, is_apart};
 
 /// For how many cycles of its slowest muscle or wave a body is watched.
 const CYCLES: f64 = 50.0;

@@ -5,12 +5,15 @@ use bevy::{math::DVec3, prelude::*};
 use crate::{
     body::{Collisions, Rules},
     creatures::FileError,
-    mechanics::six_matrix::{SixParts, Stepper, stability_limit},
+    mechanics::{
+        linear::bisect,
+        six_matrix::{SixParts, Stepper, stability_limit},
+    },
     physics::six_parts,
     scenes::{self, LoadedScene, SceneBodies},
 };
 
-use super::{Limits, search::bisect};
+use super::Limits;
 
 /// How many steps the bonds are watched, and how many the whole body: what leaves its road falls apart at any step.
 const STEPS: usize = 4000;

@@ -3,14 +3,12 @@
 
 use faer::Mat;
 
-use crate::mechanics::BodyParts;
-
-use super::{
-    iterated,
-    linear::{Linear, bare},
-    linearised_step::LinearisedStep,
-    search::{MOST, first_unstable},
+use crate::mechanics::{
+    BodyParts,
+    linear::{Linear, MOST, first_unstable},
 };
+
+use super::{iterated, linearised_step::LinearisedStep};
 
 /// The search begins at this part of the time of the fastest rate.
 const FROM: f64 = 1e-3;
@@ -33,7 +31,7 @@ pub fn linearised_limit(body: &BodyParts<'_>) -> Option<f64> {
     // The iteration watches an energy, which nothing has where no spring is.
     let is_large = linear.coordinates.len() > MOST_COORDINATES && linear.is_stiff();
     let calm = |dt| match is_large {
-        true if bare(body).on_axis() => is_calm::<1>(body, &linear, dt),
+        true if body.bare().on_axis() => is_calm::<1>(body, &linear, dt),
         true => is_calm::<3>(body, &linear, dt),
         false => growth_of(body, &linear, dt).map(|growth| growth <= 1.0 + ROUNDING),
     };
@@ -59,7 +57,7 @@ pub fn growth(body: &BodyParts<'_>, dt: f64) -> Option<f64> {
 }
 
 pub(super) fn growth_of(body: &BodyParts<'_>, linear: &Linear, dt: f64) -> Option<f64> {
-    let on_axis = bare(body).on_axis();
+    let on_axis = body.bare().on_axis();
     let matrix = if on_axis { matrix::<1>(body, linear, dt)? } else { matrix::<3>(body, linear, dt)? };
     if matrix.col_iter().any(|column| column.iter().any(|value| !value.is_finite())) {
         return Some(f64::INFINITY);

@@ -1,0 +1,72 @@
+//! The limit of a body's method in its present pose.
+//!
+//! Bounds of the fastest oscillation and of the least and the most damping decide for most methods. Explicit Euler and RK2 let everything grow that is not damped,
+//! and are limited by what is damped least, whichever direction that is. Where damping goes with stiffness that is known; across a taut spring, and where springs
+//! are damped unevenly, it is not, and the roots of all motions are found.
+
+use crate::mechanics::{
+    BodyParts,
+    integrators::Method,
+    linear::{Across, Linear, polynomial_limit},
+};
+
+use super::{Damping, StabilityBound, ratios, stability_bound};
+
+impl BodyParts<'_> {
+    /// The largest dt at which the body's method is stable in its present pose, with its rest lengths as at `time`: never above the true limit of
+    /// the linearised body. Infinite for a body that cannot oscillate.
+    pub fn stability_limit(&self, time: f64) -> f64 {
+        let bound = stability_bound(self, time);
+        self.limit_by_roots(&bound, time, Across::Resisted).unwrap_or_else(|| self.method.stability_limit(&bound))
+    }
+
+    /// The dt above which to expect that it explodes: the [limit](Self::stability_limit), but for explicit Euler and RK2 while springs are stretched. Nothing damps a motion
+    /// across a taut spring, so those two often grow at any step then. Such motions are slow and grow slowly, or friction holds them; this is the limit
+    /// of motions along the springs. A body that nothing but taut springs holds for good, such as a pendulum, does grow below it.
+    pub fn alarm_limit(&self, time: f64) -> f64 {
+        let [least_ratio, _] = ratios(self);
+        let bound = stability_bound(self, time);
+        match order(self.method) {
+            None => self.method.stability_limit(&bound),
+            Some(_) => {
+                let bound = StabilityBound { least_ratio, ..bound };
+                let along = self.limit_by_roots(&bound, time, Across::Ignored);
+                along.unwrap_or_else(|| self.method.stability_limit(&bound))
+            }
+        }
+    }
+
+    /// The limit of explicit Euler and RK2 where the bound does not know how little may be damped. Nothing for other methods and where it does know, and
+    /// for bodies whose roots are too many.
+    fn limit_by_roots(&self, bound: &StabilityBound, time: f64, across: Across) -> Option<f64> {
+        let order = order(self.method)?;
+        let [least, most] = ratios(self);
+        let known = bound.damping == Damping::Proportional && bound.least_ratio == least;
+        // What springs do not damp at all, mass damps evenly.
+        if known || most == 0.0 || self.has_spring_without_length() {
+            return None;
+        }
+        let limit = polynomial_limit(&Linear::of_few(self, time, across)?, order)?;
+        // Nor does it know which motions friction damps besides. What decays at a rate is stable up to twice its time.
+        let springs = bound.rates.iter().map(|rates| rates.damping).fold(0.0, f64::max);
+        let fastest = springs + bound.mass_damping + bound.friction;
+        Some(if bound.friction > 0.0 { limit.min(2.0 / fastest) } else { limit })
+    }
+
+    /// A spring of no length resists in any direction, which no matrix does.
+    fn has_spring_without_length(&self) -> bool {
+        self.springs.iter().any(|spring| {
+            let [a, b] = spring.ends.map(|end| self.particles.position(end));
+            a == b
+        })
+    }
+}
+
+/// The order of the methods that let everything grow that is not damped.
+fn order(method: Method) -> Option<u32> {
+    match method {
+        Method::ExplicitEuler => Some(1),
+        Method::RungeKutta2 => Some(2),
+        _ => None,
+    }
+}
