@@ -35,8 +35,8 @@ pub use reference::{Reference, StickSlip};
 pub use run::measure;
 pub use shapes::Shapes;
 pub use stiffness::{
-    Crossing, STIFFNESS_COLUMNS, StiffRun, StiffScene, StiffnessStudy, crossing, crossing_of, factors, is_implicit,
-    stiffened, stiffness_csv, stiffness_study, studied_methods,
+    Crossing, STIFFNESS_COLUMNS, StiffRun, StiffScene, StiffnessStudy, crossing, crossing_of, factors, stiffened,
+    stiffness_csv, stiffness_study, studied_methods,
 };
 pub use sweep::{SweepOptions, resumed_sweep, sweep, work_precision};
 pub use table::{COLUMNS, csv};

@@ -436,6 +436,15 @@ fn limits_of_a_block_too_large_for_its_eigenvalues_are_predicted() {
 }
 
 #[test]
+fn limits_of_a_block_that_hardly_anything_damps_are_predicted() {
+    let (particles, springs) = body_of(block(3).0, &block(3).1, |_| (1.0, 0.0));
+    for method in [Method::ExplicitEuler, Method::RungeKutta2, Method::Leapfrog] {
+        let mass_damping = MassDamping::rate(0.02).ok();
+        assert_known("block", &BodyParts { mass_damping, ..BodyParts::new(&particles, &springs, method) });
+    }
+}
+
+#[test]
 fn a_cloud_of_masses_without_springs_is_limited_by_its_damping_alone() {
     for masses in [30, 200] {
         let places = (0..masses).map(|i| Particle::at(DVec3::new(f64::from(i), f64::from(i % 7), f64::from(i % 3))));
@@ -476,7 +485,9 @@ fn limits_of_all_shipped_scenes_have_what_is_expected_or_a_reason() {
             if row.method != "SixMatrix" && row.predicted.is_some_and(f64::is_finite) {
                 assert!(row.predicted.is_some_and(|predicted| agree(linearised, predicted, 1.0)), "{row:?}");
             }
-            assert!(row.bound.is_infinite() || row.bound <= 1.005 * linearised, "{row:?}");
+            // Each limit is found to its own precision, and no limit as a small one.
+            let is_half = row.bound >= 0.5 * linearised || row.bound == 0.0 && linearised < 0.005;
+            assert!(row.bound.is_infinite() || row.bound <= 1.005 * linearised && is_half, "{row:?}");
             let near = explodes == linearised || (explodes / linearised - 1.0).abs() <= 0.06;
             assert!(near || row.reason.is_some(), "{row:?}");
         }

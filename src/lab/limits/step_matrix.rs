@@ -5,7 +5,7 @@ use faer::Mat;
 
 use crate::mechanics::{
     BodyParts,
-    linear::{Linear, MOST, first_unstable},
+    linear::{Linear, MOST, eigenvalues, first_unstable},
 };
 
 use super::{iterated, linearised_step::LinearisedStep};
@@ -14,28 +14,34 @@ use super::{iterated, linearised_step::LinearisedStep};
 const FROM: f64 = 1e-3;
 /// Limits are found to this part of themselves.
 const PRECISION: f64 = 1e-4;
-/// By iteration the search begins here, and ends where the conjugate gradients of implicit methods leave more than a disturbance.
-const ITERATED: [f64; 2] = [0.25, 100.0];
 /// To this part of themselves limits are found by iteration.
 const ITERATED_PRECISION: f64 = 5e-3;
-/// The eigenvalues of the steps of bodies of more coordinates take longer than iterations.
-const MOST_COORDINATES: usize = 60;
+/// A body of more coordinates is large.
+const MANY: usize = 60;
+/// Of a large body the search begins here, and ends where the conjugate gradients of implicit methods leave more than a disturbance.
+const RANGE_OF_MANY: [f64; 2] = [0.25, 100.0];
+/// The eigenvalues of the steps of bodies of more coordinates take longer than iterations. Those of a large body by an implicit method, whose equations are
+/// solved to a tolerance, drown in what that leaves.
+const MOST_COORDINATES: usize = 400;
 /// What rounding and the square of a disturbance may add to a growth of 1.
 const ROUNDING: f64 = 1e-8;
 
 /// The smallest step at which a small disturbance of the body's present pose grows: without friction, contact and gravity, with its muscles at rest.
-/// To a part in ten thousand by the eigenvalues of the step's matrix, for large bodies to half a percent by iteration. Infinite
+/// To a part in ten thousand by the eigenvalues of the step's matrix, or for bodies too large for that to half a percent by iteration. Infinite
 /// where none grows at any step; nothing where the method cannot step the body.
 pub fn linearised_limit(body: &BodyParts<'_>) -> Option<f64> {
     let linear = Linear::of(body)?;
+    let count = linear.coordinates.len();
+    let most = if body.method.is_implicit() { MANY } else { MOST_COORDINATES };
     // The iteration watches an energy, which nothing has where no spring is.
-    let is_large = linear.coordinates.len() > MOST_COORDINATES && linear.is_stiff();
-    let calm = |dt| match is_large {
+    let iterated = count > most && linear.is_stiff();
+    let calm = |dt| match iterated {
         true if body.bare().on_axis() => is_calm::<1>(body, &linear, dt),
         true => is_calm::<3>(body, &linear, dt),
         false => growth_of(body, &linear, dt).map(|growth| growth <= 1.0 + ROUNDING),
     };
-    let (range, precision) = if is_large { (ITERATED, ITERATED_PRECISION) } else { ([FROM, MOST], PRECISION) };
+    let range = if count > MANY && linear.is_stiff() { RANGE_OF_MANY } else { [FROM, MOST] };
+    let precision = if iterated { ITERATED_PRECISION } else { PRECISION };
     let mut refused = false;
     let limit = first_unstable(linear.rate, range, precision, |dt| {
         let calm = calm(dt);
@@ -62,7 +68,7 @@ pub(super) fn growth_of(body: &BodyParts<'_>, linear: &Linear, dt: f64) -> Optio
     if matrix.col_iter().any(|column| column.iter().any(|value| !value.is_finite())) {
         return Some(f64::INFINITY);
     }
-    let values = if matrix.nrows() == 0 { Vec::new() } else { matrix.eigenvalues().ok()? };
+    let values = eigenvalues(&matrix)?;
     Some(values.into_iter().map(|value| value.norm()).fold(0.0, f64::max))
 }
 

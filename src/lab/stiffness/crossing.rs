@@ -4,11 +4,6 @@ use crate::mechanics::integrators::Method;
 
 use super::StiffnessStudy;
 
-/// Whether a method solves for where a step ends, so that no stiffness bounds the step and none makes it dearer.
-pub fn is_implicit(method: Method) -> bool {
-    matches!(method, Method::ImplicitMidpoint | Method::ImplicitEuler | Method::Xpbd)
-}
-
 /// From which stiffness on implicit methods win.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Crossing {
@@ -22,7 +17,7 @@ pub enum Crossing {
 
 /// Compares the cheapest implicit method with the cheapest other one, in seconds.
 pub fn crossing(study: &StiffnessStudy) -> Crossing {
-    compare(study, is_implicit)
+    compare(study, Method::is_implicit)
 }
 
 /// Compares one implicit method with the cheapest one that is not implicit, in seconds.
@@ -33,7 +28,7 @@ pub fn crossing_of(study: &StiffnessStudy, method: Method) -> Crossing {
 fn compare(study: &StiffnessStudy, these: impl Fn(Method) -> bool) -> Crossing {
     let cheapest = |i: usize, implicit: bool| {
         let scene = &study.scenes[i];
-        if implicit { scene.cheapest(&these) } else { scene.cheapest(|method| !is_implicit(method)) }
+        if implicit { scene.cheapest(&these) } else { scene.cheapest(|method| !method.is_implicit()) }
     };
     // How much dearer implicit methods are, as a logarithm.
     let dearer = |i: usize| match (cheapest(i, true), cheapest(i, false)) {

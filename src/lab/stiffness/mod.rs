@@ -16,7 +16,7 @@ use crate::{
     mechanics::integrators::{Method, StickRule},
 };
 
-pub use crossing::{Crossing, crossing, crossing_of, is_implicit};
+pub use crossing::{Crossing, crossing, crossing_of};
 pub use record::{StiffRun, StiffScene, StiffnessStudy};
 pub use table::{STIFFNESS_COLUMNS, stiffness_csv};
 

@@ -175,6 +175,11 @@ impl Method {
         }
     }
 
+    /// Whether it solves for where a step ends, so that no stiffness bounds the step and none makes it dearer.
+    pub fn is_implicit(self) -> bool {
+        matches!(self, Self::ImplicitMidpoint | Self::ImplicitEuler | Self::Xpbd)
+    }
+
     /// Whether it can stop its steps where masses stick and slip.
     pub fn locates(self) -> bool {
         matches!(self, Self::RungeKutta2 | Self::RungeKutta4)

@@ -3,6 +3,7 @@
 //! Of a large body the stiffest direction alone is found, by a Krylov method on the sparse K. Where damping goes with stiffness that direction decides
 //! the limits of all methods with a formula: they fall with κ where γ goes with it.
 
+mod eigenvalues;
 mod matrices;
 mod roots;
 mod search;
@@ -20,6 +21,7 @@ use super::{BodyParts, Damping, rest_lengths, stability_bound};
 
 use matrices::{coordinates, following, matrices};
 
+pub(crate) use eigenvalues::eigenvalues;
 pub(crate) use matrices::Coordinate;
 pub(crate) use roots::polynomial_limit;
 pub(crate) use search::{MOST, bisect, first_unstable};

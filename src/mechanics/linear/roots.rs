@@ -7,7 +7,7 @@ use faer::{Mat, c64};
 
 use crate::body::MassDamping;
 
-use super::{Linear, MOST, first_unstable, spectrum};
+use super::{Linear, MOST, eigenvalues, first_unstable, spectrum};
 
 /// What rounding may take from the decay of a root, in the fastest.
 const ROUNDING: f64 = 1e-11;
@@ -60,7 +60,7 @@ fn roots(linear: &Linear, dt: f64) -> Option<Vec<c64>> {
                 (false, true) => -linear.stiffness[(i - count, j)] / linear.rate,
                 (false, false) => -damping(i - count, j - count),
             });
-            matrix.eigenvalues().ok()?
+            eigenvalues(&matrix)?
         }
     };
     let fastest = roots.iter().map(|root| root.norm()).fold(0.0, f64::max);

@@ -4,7 +4,7 @@ use crate::{
     lab::{
         Crossing, Point, StiffnessStudy,
         chart::{Cost, Look, scale::LogScale, scale::short, shapes::Place, shapes::Rect},
-        crossing, is_implicit, studied_methods,
+        crossing, studied_methods,
     },
     mechanics::integrators::{Method, StickRule},
 };
@@ -91,7 +91,7 @@ impl StiffnessPlot {
         /// Far enough to leave the frame on any axis.
         const DECADES: f64 = 40.0;
         let last = study.scenes.last()?;
-        let (_, seconds) = last.cheapest(|method| !is_implicit(method))?;
+        let (_, seconds) = last.cheapest(|method| !method.is_implicit())?;
         let (x, y) = (libm::log10(last.factor), libm::log10(BELOW * seconds));
         let at = |along: f64| (self.x.place_log(x + along), self.y.place_log(y + 0.5 * along));
         let ends = [at(-DECADES), at(DECADES)];

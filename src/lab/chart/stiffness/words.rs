@@ -13,7 +13,7 @@ use crate::{
             text::{Anchor, Text},
             words::write,
         },
-        crossing, crossing_of, is_implicit,
+        crossing, crossing_of,
     },
     mechanics::integrators::Method,
 };
@@ -41,7 +41,7 @@ pub fn verdict(study: &StiffnessStudy) -> String {
             None => "No method is good enough at any step that was tried.".into(),
         },
     };
-    let each = Method::ALL.into_iter().filter(|&method| is_implicit(method));
+    let each = Method::ALL.into_iter().filter(|method| method.is_implicit());
     let each: Vec<_> = each
         .filter_map(|method| match crossing_of(study, method) {
             Crossing::Always(_) => Some(format!("{} everywhere", method.name())),
