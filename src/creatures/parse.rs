@@ -1,6 +1,6 @@
 //! Text to data, with the file, line, column and field of what is wrong.
 
-use ron::{Options, extensions::Extensions};
+use ron::{Options, error::SpannedError, extensions::Extensions};
 use serde::{Deserialize, Deserializer, de::DeserializeOwned};
 
 use super::FileError;
@@ -38,20 +38,47 @@ pub(crate) fn parse<T: CurrentVersion>(text: &str, file: &str) -> Result<T, File
 }
 
 fn read<T: DeserializeOwned>(text: &str, file: &str) -> Result<T, FileError> {
-    let fail = |error: ron::error::SpannedError, field: String| {
+    deserialize(text).map_err(|(error, field)| {
         // A value is where it begins; what should not be there is where the reader stopped.
         let place = if error.code == ron::Error::TrailingCharacters { error.span.end } else { error.span.start };
         let (line, column) = (place.line, place.col);
-        FileError::Value { file: file.into(), line, column, field: field_name(&field), problem: problem(&error.code) }
-    };
+        let problem = wanted_variants::<T>(text, &error).unwrap_or_else(|| problem(&error.code));
+        FileError::Value { file: file.into(), line, column, field: field_name(&field), problem }
+    })
+}
+
+/// The data of a text, or what is wrong and the path of the field.
+fn deserialize<T: DeserializeOwned>(text: &str) -> Result<T, (SpannedError, String)> {
     let mut deserializer =
-        ron::Deserializer::from_str_with_options(text, &options()).map_err(|error| fail(error, String::new()))?;
+        ron::Deserializer::from_str_with_options(text, &options()).map_err(|error| (error, String::new()))?;
     let value = serde_path_to_error::deserialize(&mut deserializer).map_err(|error| {
         let field = error.path().to_string();
-        fail(deserializer.span_error(error.into_inner()), field)
+        (deserializer.span_error(error.into_inner()), field)
     })?;
-    deserializer.end().map_err(|error| fail(deserializer.span_error(error), String::new()))?;
+    deserializer.end().map_err(|error| (deserializer.span_error(error), String::new()))?;
     Ok(value)
+}
+
+/// What may stand where something else than a name does: asked for by putting a name there that nothing has. Nothing where the problem is another.
+fn wanted_variants<T: DeserializeOwned>(text: &str, error: &SpannedError) -> Option<String> {
+    const NOBODY: &str = "NoSuchName ";
+    if !matches!(error.code, ron::Error::ExpectedIdentifier | ron::Error::SuggestRawIdentifier(_)) {
+        return None;
+    }
+    let lines = text.split_inclusive('\n').take(error.span.start.line - 1);
+    let before: usize = lines.map(str::len).sum();
+    let line = text.get(before..)?;
+    let (column, _) = line.char_indices().nth(error.span.start.col - 1)?;
+    let (ahead, behind) = text.split_at_checked(before + column)?;
+    match deserialize::<T>(&[ahead, NOBODY, behind].concat()) {
+        Err((SpannedError { code: ron::Error::NoSuchEnumVariant { expected, .. }, .. }, _)) => {
+            let names: Vec<_> = expected.iter().map(|name| format!("`{name}`")).collect();
+            let (last, others) = names.split_last()?;
+            let others = others.join(", ");
+            Some(if others.is_empty() { format!("expected {last}") } else { format!("expected {others} or {last}") })
+        }
+        _ => None,
+    }
 }
 
 /// The path of a field as messages about bodies and parameter paths write it.

@@ -162,6 +162,8 @@ fn bad_values_are_reported_with_line_column_field_and_what_is_right() {
         ("(2, 0, 0)", "(2, inf, 0)", &[":3:", "particles[2].position", "inf is not allowed", "finite"]),
         ("period: 2", "period: 0", &[":4:", "springs[0].muscle", "period: 0", "above 0"]),
         ("wave: Sine", "wave: Saw", &[":4:", "springs[0].muscle", "Saw", "Sine", "Square"]),
+        ("wave: Sine", "wave: 3", &[":4:", "springs[0].muscle", "expected `Sine` or `Square`"]),
+        ("wave: Sine", "wave: (period: 2)", &[":4:", "springs[0].muscle", "expected `Sine` or `Square`"]),
         ("drag: 0", "drag: -1", &[":7:", "friction", "drag: -1", "0 or more"]),
         (
             "stiffness: 1.5, damping",
@@ -197,6 +199,8 @@ fn bad_values_of_a_scene_are_reported_too() {
         ("SemiImplicitEuler", "Newmark", &[":4:", "method", "Newmark", "RungeKutta4"]),
         ("Pixels(1)", "Pixels(0)", &[":4:", "budget", "above 0"]),
         ("ground: None", "ground: Hilly", &[":1:", "ground", "Hilly", "Flat"]),
+        ("ground: None", "ground: 0", &[":1:", "ground: expected `Flat` or `Terrain`"]),
+        ("Pixels(1)", "1", &[":4:", "budget: expected `Pixels`", " or "]),
         ("title: \"Garden\", ", "", &["`title` is missing"]),
         ("heading: 0", "facing: 0", &[":2:", "creatures[0].facing", "`heading`"]),
     ] {
