@@ -37,8 +37,16 @@ pub(crate) fn parse<T: CurrentVersion>(text: &str, file: &str) -> Result<T, File
     })
 }
 
+/// Why a text is no data.
+struct Fault {
+    error: SpannedError,
+    /// The path of the field.
+    field: String,
+}
+
 fn read<T: DeserializeOwned>(text: &str, file: &str) -> Result<T, FileError> {
-    deserialize(text).map_err(|(error, field)| {
+    deserialize(text).map_err(|fault| {
+        let Fault { error, field } = *fault;
         // A value is where it begins; what should not be there is where the reader stopped.
         let place = if error.code == ron::Error::TrailingCharacters { error.span.end } else { error.span.start };
         let (line, column) = (place.line, place.col);
@@ -47,15 +55,15 @@ fn read<T: DeserializeOwned>(text: &str, file: &str) -> Result<T, FileError> {
     })
 }
 
-/// The data of a text, or what is wrong and the path of the field.
-fn deserialize<T: DeserializeOwned>(text: &str) -> Result<T, (SpannedError, String)> {
+fn deserialize<T: DeserializeOwned>(text: &str) -> Result<T, Box<Fault>> {
+    let fault = |error, field| Box::new(Fault { error, field });
     let mut deserializer =
-        ron::Deserializer::from_str_with_options(text, &options()).map_err(|error| (error, String::new()))?;
+        ron::Deserializer::from_str_with_options(text, &options()).map_err(|error| fault(error, String::new()))?;
     let value = serde_path_to_error::deserialize(&mut deserializer).map_err(|error| {
         let field = error.path().to_string();
-        (deserializer.span_error(error.into_inner()), field)
+        fault(deserializer.span_error(error.into_inner()), field)
     })?;
-    deserializer.end().map_err(|error| (deserializer.span_error(error), String::new()))?;
+    deserializer.end().map_err(|error| fault(deserializer.span_error(error), String::new()))?;
     Ok(value)
 }
 
@@ -70,15 +78,15 @@ fn wanted_variants<T: DeserializeOwned>(text: &str, error: &SpannedError) -> Opt
     let line = text.get(before..)?;
     let (column, _) = line.char_indices().nth(error.span.start.col - 1)?;
     let (ahead, behind) = text.split_at_checked(before + column)?;
-    match deserialize::<T>(&[ahead, NOBODY, behind].concat()) {
-        Err((SpannedError { code: ron::Error::NoSuchEnumVariant { expected, .. }, .. }, _)) => {
-            let names: Vec<_> = expected.iter().map(|name| format!("`{name}`")).collect();
-            let (last, others) = names.split_last()?;
-            let others = others.join(", ");
-            Some(if others.is_empty() { format!("expected {last}") } else { format!("expected {others} or {last}") })
-        }
-        _ => None,
-    }
+    let ron::Error::NoSuchEnumVariant { expected, .. } =
+        deserialize::<T>(&[ahead, NOBODY, behind].concat()).err()?.error.code
+    else {
+        return None;
+    };
+    let names: Vec<_> = expected.iter().map(|name| format!("`{name}`")).collect();
+    let (last, others) = names.split_last()?;
+    let others = others.join(", ");
+    Some(if others.is_empty() { format!("expected {last}") } else { format!("expected {others} or {last}") })
 }
 
 /// The path of a field as messages about bodies and parameter paths write it.
