@@ -5,6 +5,7 @@
 //! [`CurrentScene`] changes. [`Shot`] draws pictures without a window.
 
 mod adapter;
+mod blade;
 mod camera;
 mod clay;
 mod drag;

@@ -43,10 +43,17 @@ pub(super) fn set_up(
         Decor,
         NotShadowCaster,
         // Two tiles on, it looks the same.
-        Travels(2.0 * edge),
+        Travels { every: 2.0 * edge, middle: Vec3::ZERO },
         Mesh3d(meshes.add(floor.fire())),
         MeshMaterial3d(floor_paint),
     ));
     let sky = (Mesh3d(meshes.add(backdrop::sky().fire())), MeshMaterial3d(paints.add(Paint::glowing())));
-    commands.spawn((SceneMember, Decor, NotShadowCaster, NoFrustumCulling, Travels(0.0), sky));
+    commands.spawn((
+        SceneMember,
+        Decor,
+        NotShadowCaster,
+        NoFrustumCulling,
+        Travels { every: 0.0, middle: Vec3::ZERO },
+        sky,
+    ));
 }

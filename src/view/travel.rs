@@ -9,9 +9,14 @@ use crate::{
     scenes::{self, CurrentScene, FIELD_OF_VIEW, Props, SceneBodies},
 };
 
-/// Moves with what the camera looks at, by whole multiples of a length after which it looks the same; at any place where that is 0.
+/// Moves with what the camera looks at, so that its middle stays the nearest that it can.
 #[derive(Clone, Component, Copy, Debug)]
-pub(super) struct Travels(pub f32);
+pub(super) struct Travels {
+    /// By whole multiples of this length, after which it looks the same; by any length where it is 0.
+    pub every: f32,
+    /// Where its middle is at home.
+    pub middle: Vec3,
+}
 
 /// No further away does the camera go by itself: animals that are further apart than it then sees are too small to be looked at together.
 const FARTHEST: f32 = 100.0;
@@ -90,8 +95,9 @@ fn further(distance: f32, apart: f32) -> f32 {
 
 fn travel(cameras: Query<&PanOrbitCamera, With<SceneCamera>>, mut things: Query<(&Travels, &mut Transform)>) {
     let Some(orbit) = cameras.iter().next() else { return };
-    for (&Travels(length), mut transform) in &mut things {
-        let there = if length > 0.0 { (orbit.focus / length).round() * length } else { orbit.focus };
+    for (&Travels { every, middle }, mut transform) in &mut things {
+        let away = orbit.focus - middle;
+        let there = if every > 0.0 { (away / every).round() * every } else { away };
         let there = there.with_y(transform.translation.y);
         if transform.translation != there {
             transform.translation = there;

@@ -53,20 +53,53 @@ pub(in crate::view) fn clouds(random: &mut SmallRng, quality: Quality) -> Clay {
     clay
 }
 
-/// Two rows of hills, the further the paler.
-pub(in crate::view) fn hills(random: &mut SmallRng, quality: Quality) -> Clay {
+/// Two rows of hills, the further the paler, with so many trees on each.
+pub(in crate::view) fn hills(random: &mut SmallRng, quality: Quality, trees: usize) -> Clay {
     let mut clay = Clay::default();
-    for (count, out, low, high, code) in [(15, 118.0, 8.0, 14.0, 0x6f9a6a_u32), (13, 84.0, 4.0, 8.0, 0x6fa54a)] {
+    for (count, out, low, high, code) in [(15, 126.0, 8.0, 14.0, 0x6f9a6a_u32), (13, 96.0, 4.0, 8.0, 0x6fa54a)] {
         for i in 0..count {
             let around = TAU * (i as f32 + between(random, -0.3, 0.3)) / count as f32;
-            let place = Transform::from_xyz(MIDDLE.x + around.cos() * out, -2.0, around.sin() * out).with_scale(
-                Vec3::new(between(random, 24.0, 38.0), between(random, low, high), between(random, 24.0, 38.0)),
-            );
+            let foot = Vec3::new(MIDDLE.x + around.cos() * out, -0.5, around.sin() * out);
+            let hill = Hill { foot, radius: between(random, 30.0, 44.0), height: between(random, low, high) };
             let color = shade(tint(code), between(random, 0.85, 1.1));
-            clay.ball(place, quality.roundness() + 6, |direction| shade(color, 0.6 + 0.4 * direction.y.max(0.0)));
+            hill.heap(&mut clay, quality.roundness() + 6, color);
+            for _ in 0..trees {
+                let (turn, part) = (between(random, 0.0, TAU), between(random, 0.1, 0.6));
+                let foot = hill.at(Vec2::from_angle(turn) * part).0 - Vec3::Y * 0.1;
+                tree(&mut clay, foot, between(random, 1.2, 2.2), quality.roundness() / 2, random);
+            }
         }
     }
     clay
+}
+
+/// A round hill that goes over into the plain: (1 − ρ²)² of its height at the part ρ of its radius.
+struct Hill {
+    foot: Vec3,
+    radius: f32,
+    height: f32,
+}
+
+impl Hill {
+    /// A spot of its surface, in parts of its radius from its middle, and the normal there.
+    fn at(&self, spot: Vec2) -> (Vec3, Vec3) {
+        let rest = (1.0 - spot.length_squared()).max(0.0);
+        let up = self.height * rest * rest;
+        let fall = 4.0 * self.height * rest / self.radius;
+        (
+            self.foot + Vec3::new(self.radius * spot.x, up, self.radius * spot.y),
+            Vec3::new(fall * spot.x, 1.0, fall * spot.y).normalize(),
+        )
+    }
+
+    fn heap(&self, clay: &mut Clay, sides: usize, color: Tint) {
+        let (spokes, rings) = (2 * sides, sides);
+        clay.grid(spokes + 1, rings, |spoke, ring| {
+            let turn = Vec2::from_angle(-TAU * spoke as f32 / spokes as f32);
+            let (place, normal) = self.at(turn * (ring as f32 / (rings - 1) as f32));
+            (place, normal, shade(color, 0.8 + 0.2 * (place.y - self.foot.y) / self.height))
+        });
+    }
 }
 
 /// How many trees stand around the garden, and into how many meshes they go, so that those behind the viewer cost nothing.

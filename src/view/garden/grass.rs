@@ -5,7 +5,8 @@ use rand::{RngExt, rngs::SmallRng};
 
 use super::{FIELD, MIDDLE, between, burrow, house, lawn, path};
 use crate::view::{
-    clay::{Clay, blend, shade, swaying, tint},
+    blade::{Size, blade},
+    clay::{Clay, shade},
     light::shaded,
     quality::Quality,
 };
@@ -31,47 +32,11 @@ pub(super) fn patches(random: &mut SmallRng, quality: Quality) -> Vec<Clay> {
             height: between(random, 0.16, 0.38) * tall * (1.0 + out * 0.012),
             width: (0.016 + out * 0.0011) * quality.blade_width(),
         };
-        blade(patches.entry(patch).or_default(), at, size, random, quality);
+        let root = Vec3::new(at.x, lawn::height(at.x, at.y) - 0.02, at.y);
+        let green = shade(lawn::green(at.x, at.y), shaded(root + Vec3::Y * 0.1, quality));
+        blade(patches.entry(patch).or_default(), root, size, green, random, quality);
     }
     let mut patches: Vec<_> = patches.into_iter().collect();
     patches.sort_unstable_by_key(|(patch, _)| *patch);
     patches.into_iter().map(|(_, clay)| clay).collect()
-}
-
-struct Size {
-    height: f32,
-    width: f32,
-}
-
-/// One blade: a bent strip that ends in a point.
-fn blade(clay: &mut Clay, at: Vec2, size: Size, random: &mut SmallRng, quality: Quality) {
-    let turn = Vec2::from_angle(between(random, 0.0, core::f32::consts::TAU));
-    let (across, lean) = (Vec3::new(turn.x, 0.0, turn.y), Vec3::new(-turn.y, 0.0, turn.x));
-    let bend = between(random, 0.1, 0.75) * size.height;
-    let root = Vec3::new(at.x, lawn::height(at.x, at.y) - 0.02, at.y);
-    let dry = random.random::<f32>().powi(4) * 0.55;
-    let light = shaded(root + Vec3::Y * 0.1, quality) * between(random, 0.82, 1.18);
-    let fresh = shade(blend(lawn::green(at.x, at.y), tint(0xd9c25a), dry), light);
-    let normal = (Vec3::Y + lean * 0.35).normalize();
-    let segments = quality.blade_segments();
-    let mut below = None;
-    for i in 0..=segments {
-        let t = i as f32 / segments as f32;
-        let spine = root + Vec3::Y * (size.height * t * (1.0 - 0.15 * t)) + lean * (bend * t * t);
-        let color = swaying(shade(fresh, 0.5 + 0.75 * t), size.height * 0.3 * t * t);
-        let half = across * (size.width * (1.0 - 0.6 * t));
-        if i == segments {
-            let tip = clay.vertex(spine, normal, color);
-            if let Some((left, right)) = below {
-                clay.triangle(left, right, tip);
-            }
-        } else {
-            let (left, right) = (clay.vertex(spine - half, normal, color), clay.vertex(spine + half, normal, color));
-            if let Some((l, r)) = below {
-                clay.triangle(l, r, right);
-                clay.triangle(l, right, left);
-            }
-            below = Some((left, right));
-        }
-    }
 }

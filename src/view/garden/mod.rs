@@ -56,7 +56,7 @@ pub(super) fn plant(
         Paint { finish: Vec4::new(0.0, 0.0, 0.0, 0.25), ..Paint::matte(false) },
         false,
     );
-    spawn(backdrop::hills(&mut random, quality), Paint::matte(false), false);
+    spawn(backdrop::hills(&mut random, quality, 0), Paint::matte(false), false);
     for sector in backdrop::trees(&mut random, quality) {
         spawn(sector, Paint::matte(shadows), true);
     }

@@ -3,8 +3,10 @@
 use core::f32::consts::TAU;
 use std::sync::Arc;
 
-use bevy::{camera::visibility::NoFrustumCulling, light::NotShadowCaster, math::DVec3, prelude::*};
+use bevy::{light::NotShadowCaster, math::DVec3, prelude::*};
 use rand::{RngExt, SeedableRng, rngs::SmallRng};
+
+mod turf;
 
 use super::{
     Decor,
@@ -25,6 +27,8 @@ const NEAR: f32 = 64.0;
 const FAR: [f32; 6] = [72.0, 84.0, 100.0, 130.0, 170.0, 240.0];
 /// A plain repeats itself after this length.
 const TILE: f32 = 96.0;
+/// How many trees stand on each of the hills.
+const TREES: usize = 3;
 /// Below this side grip a patch of the ground is sand, above it grass.
 const SANDY: f64 = 2.0;
 /// How high a wall is drawn, and how long.
@@ -44,8 +48,9 @@ pub(super) fn set_up(
     let shadows = quality.shadows();
     let mut random = SmallRng::seed_from_u64(4);
     // A plain looks the same a tile further on; what has edges, rounds and patches is one place.
-    let tile = if *ground == Ground::Flat { Some(TILE) } else { None };
-    let mut spawn = |clay: Clay, paint: Paint, casts: bool, travels: Option<f32>, places: &[Vec3]| {
+    let tile = (*ground == Ground::Flat).then_some(Travels { every: TILE, middle: Vec3::ZERO });
+    let with_the_view = Some(Travels { every: 0.0, middle: Vec3::ZERO });
+    let mut spawn = |clay: Clay, paint: Paint, casts: bool, travels: Option<Travels>, places: &[Vec3]| {
         if clay.triangles() == 0 {
             return;
         }
@@ -54,20 +59,21 @@ pub(super) fn set_up(
             let looks = (Mesh3d(mesh.clone()), MeshMaterial3d(paint.clone()), Transform::from_translation(place));
             let root = (SceneMember, Decor, Transform::default(), Visibility::default());
             let root = commands.spawn(root).id();
-            if let Some(length) = travels {
-                commands.entity(root).insert(Travels(length));
+            if let Some(travels) = travels {
+                commands.entity(root).insert(travels);
             }
-            let mut thing = commands.spawn((NoFrustumCulling, looks, ChildOf(root)));
+            let mut thing = commands.spawn((looks, ChildOf(root)));
             if !casts {
                 thing.insert(NotShadowCaster);
             }
         }
     };
     let here = [Vec3::ZERO];
-    spawn(backdrop::sky(), Paint::glowing(), false, Some(0.0), &here);
+    spawn(backdrop::sky(), Paint::glowing(), false, with_the_view, &here);
     let haze = Paint { finish: Vec4::new(0.0, 0.0, 0.0, 0.25), ..Paint::matte(false) };
-    spawn(backdrop::clouds(&mut random, quality), haze, false, Some(0.0), &here);
-    spawn(backdrop::hills(&mut random, quality), Paint::matte(false), false, Some(0.0), &here);
+    spawn(backdrop::clouds(&mut random, quality), haze, false, with_the_view, &here);
+    let thin_haze = Paint { finish: Vec4::new(0.0, 0.0, 0.0, 0.7), ..Paint::matte(false) };
+    spawn(backdrop::hills(&mut random, quality, TREES), thin_haze, false, with_the_view, &here);
     let middle = if tile.is_some() { Vec3::ZERO } else { middle };
     let lying = without_walls(ground);
     spawn(land(&lying, middle), Paint::matte(shadows), false, tile, &here);
@@ -77,6 +83,9 @@ pub(super) fn set_up(
         (-1..=1).flat_map(|x| (-1..=1).map(move |z| Vec3::new(x as f32, 0.0, z as f32) * TILE)).collect();
     let places = if tile.is_some() { &around[..] } else { &here };
     spawn(leaves, Paint::leafy(shadows), false, tile, places);
+    for (middle, blades) in turf::patches(&lying, middle, quality, &mut random) {
+        spawn(blades, Paint::leafy(shadows), false, tile.map(|tile| Travels { middle, ..tile }), &here);
+    }
     spawn(stones, Paint::matte(shadows), true, tile, places);
 }
 
@@ -125,6 +134,12 @@ fn height(ground: &Ground, x: f32, z: f32) -> f32 {
     if highest.is_finite() { highest as f32 } else { -40.0 }
 }
 
+/// Whether nothing grows at a spot because it is too steep.
+fn is_steep(ground: &Ground, x: f32, z: f32) -> bool {
+    let at = || Vec3::new(x, height(ground, x, z), z).as_dvec3();
+    *ground != Ground::Flat && ground_distance(ground, at()).1.y < 0.9
+}
+
 /// Whether a spot is sand.
 fn is_sand(ground: &Ground, x: f32, z: f32) -> bool {
     let Ground::Terrain(terrain) = ground else { return false };
@@ -143,14 +158,21 @@ fn color(ground: &Ground, x: f32, z: f32, up: f32) -> Tint {
         let ripple = (z * 2.4 + (x * 0.7).sin() * 0.8 + (x * 0.23 + z * 0.1).sin() * 2.0).sin() * 0.5 + 0.5;
         shade(blend(tint(0xd3b078), tint(0xe9d3a2), ripple), 0.62)
     } else {
-        let (x, z) = (x * TAU / TILE, z * TAU / TILE);
-        let patch = (5.0 * x + (4.0 * z).sin() * 1.3).sin() * (5.0 * z + (3.0 * x).cos()).cos() * 0.5 + 0.5;
-        // As the garden's lawn; tufts are brighter than what they stand on.
-        shade(blend(tint(0x4c7838), tint(0x7a9a50), patch), 0.66)
+        // As the garden's lawn: blades are brighter than what they stand on.
+        shade(blend(green(x, z), tint(0x7a7440), 0.2), 0.68)
     };
     let strata = (x * 1.7 + z * 0.35).sin() * 0.5 + 0.5;
     let rock = shade(blend(tint(0x9a8266), tint(0xb79f80), strata), 0.7);
     blend(rock, shade(soft, chequer), ((up - 0.45) / 0.35).clamp(0.0, 1.0))
+}
+
+/// The colour of grass at a spot, in patches of several sizes that repeat themselves with the tile.
+fn green(x: f32, z: f32) -> Tint {
+    let (x, z) = (x * TAU / TILE, z * TAU / TILE);
+    let broad = (3.0 * x + 1.7 * (2.0 * z + 1.0).sin()).sin() * (3.0 * z + 1.3 * (2.0 * x).sin()).sin();
+    let middling = (7.0 * x + 2.0 * (5.0 * z).sin()).sin() * (6.0 * z + 1.9 * (4.0 * x + 2.0).sin()).sin();
+    let small = (13.0 * x + 1.5 * (11.0 * z).sin()).sin() * (12.0 * z + 1.2 * (9.0 * x).sin()).sin();
+    blend(tint(0x467a30), tint(0x6f9c3e), 0.5 + 0.28 * broad + 0.18 * middling + 0.12 * small)
 }
 
 /// Where the lines of the drawn ground are along one axis: closer near the middle, and wherever else `also` says.
@@ -228,11 +250,7 @@ fn scattered(ground: &Ground, middle: Vec3, quality: Quality, random: &mut Small
         let (x, z) =
             (middle.x + random.random_range(-0.5..0.5) * TILE, middle.z + random.random_range(-0.5..0.5) * TILE);
         let foot = Vec3::new(x, height(ground, x, z), z);
-        let up = match ground {
-            Ground::Flat => 1.0,
-            Ground::Terrain(_) => ground_distance(ground, foot.as_dvec3()).1.y,
-        };
-        if up < 0.9 {
+        if is_steep(ground, x, z) {
             continue;
         }
         let sandy = is_sand(ground, x, z);
@@ -246,7 +264,7 @@ fn scattered(ground: &Ground, middle: Vec3, quality: Quality, random: &mut Small
             });
         }
         if !sandy {
-            tuft(&mut leaves, foot, i % 11 == 0, random);
+            tuft(&mut leaves, foot, i % 5 == 0, random);
         }
     }
     [leaves, stones]
@@ -270,7 +288,7 @@ fn tuft(leaves: &mut Clay, foot: Vec3, flower: bool, random: &mut SmallRng) {
         let top = foot + Vec3::Y * random.random_range(0.3..0.5_f32);
         for i in 0..5 {
             let around = TAU * i as f32 / 5.0;
-            let out = Vec3::new(around.cos(), 0.25, around.sin()) * 0.09;
+            let out = Vec3::new(around.cos(), 0.25, around.sin()) * 0.12;
             let side = Vec3::new(-out.z, 0.0, out.x) * 0.5;
             let color = swaying(tint(petals), 0.04);
             let corners = [top, top + out - side, top + out * 1.3, top + out + side];
@@ -278,7 +296,7 @@ fn tuft(leaves: &mut Clay, foot: Vec3, flower: bool, random: &mut SmallRng) {
             leaves.triangle(a, c, b);
             leaves.triangle(a, d, c);
         }
-        let heart = Transform::from_translation(top + Vec3::Y * 0.02).with_scale(Vec3::splat(0.045));
+        let heart = Transform::from_translation(top + Vec3::Y * 0.02).with_scale(Vec3::splat(0.06));
         leaves.ball(heart, 8, |_| swaying(tint(0xf0b81e), 0.04));
     }
 }
