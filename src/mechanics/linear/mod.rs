@@ -77,11 +77,11 @@ impl Linear {
 
     /// Linearises a body in its present pose, with its rest lengths as at `time`; nothing for one of more coordinates than can be had all eigenvalues of.
     pub(crate) fn of_few(body: &BodyParts<'_>, time: f64, across: Across) -> Option<Self> {
-        let dimensions = dimensions(body);
-        let coordinates = coordinates(body, dimensions);
-        if coordinates.len() > MOST_COORDINATES {
+        if coordinate_count(body) > MOST_COORDINATES {
             return None;
         }
+        let dimensions = dimensions(body);
+        let coordinates = coordinates(body, dimensions);
         let (springs, damping) = matrices(body, &rest_lengths(body, time), dimensions, &coordinates, across)?;
         let (stiffness, damping) = (springs.to_dense(), damping.to_dense());
         let (hardest, most) = (largest(&stiffness), largest(&damping));
@@ -181,6 +181,11 @@ impl Linear {
     pub(crate) fn mass_rate(&self, dt: f64) -> f64 {
         self.mass_damping.map_or(0.0, |damping| damping.rate_at(dt))
     }
+}
+
+/// How many coordinates of a body can change.
+pub(crate) fn coordinate_count(body: &BodyParts<'_>) -> usize {
+    dimensions(body) * body.particles.pinned().iter().filter(|pinned| !**pinned).count()
 }
 
 /// How many axes its particles can move along.

@@ -7,22 +7,29 @@
 use crate::mechanics::{
     BodyParts,
     integrators::Method,
-    linear::{Across, Linear, polynomial_limit},
+    linear::{Across, Linear, coordinate_count, polynomial_limit},
 };
 
 use super::{Damping, StabilityBound, ratios, stability_bound};
+
+/// What the gauge of a running scene waits for has no more coordinates than this: some fiftieth of a second.
+const MOST_WHILE_RUNNING: usize = 200;
+/// Nor has one whose roots are others at every step, so that they are found some forty times.
+const MOST_BY_STEP: usize = 60;
 
 impl BodyParts<'_> {
     /// The largest dt at which the body's method is stable in its present pose, with its rest lengths as at `time`: never above the true limit of
     /// the linearised body. Infinite for a body that cannot oscillate.
     pub fn stability_limit(&self, time: f64) -> f64 {
         let bound = stability_bound(self, time);
-        self.limit_by_roots(&bound, time, Across::Resisted).unwrap_or_else(|| self.method.stability_limit(&bound))
+        let found = self.limit_by_roots(&bound, time, Across::Resisted);
+        found.unwrap_or_else(|| self.method.stability_limit(&bound))
     }
 
     /// The dt above which to expect that it explodes: the [limit](Self::stability_limit), but for explicit Euler and RK2 while springs are stretched. Nothing damps a motion
     /// across a taut spring, so those two often grow at any step then. Such motions are slow and grow slowly, or friction holds them; this is the limit
-    /// of motions along the springs. A body that nothing but taut springs holds for good, such as a pendulum, does grow below it.
+    /// of motions along the springs. A body that nothing but taut springs holds for good, such as a pendulum, does grow below it. 0 for a larger body with a spring that is
+    /// not damped beside others that are.
     pub fn alarm_limit(&self, time: f64) -> f64 {
         let [least_ratio, _] = ratios(self);
         let bound = stability_bound(self, time);
@@ -30,7 +37,8 @@ impl BodyParts<'_> {
             None => self.method.stability_limit(&bound),
             Some(_) => {
                 let bound = StabilityBound { least_ratio, ..bound };
-                let along = self.limit_by_roots(&bound, time, Across::Ignored);
+                let is_small = coordinate_count(self) <= MOST_WHILE_RUNNING;
+                let along = if is_small { self.limit_by_roots(&bound, time, Across::Ignored) } else { None };
                 along.unwrap_or_else(|| self.method.stability_limit(&bound))
             }
         }
@@ -44,6 +52,9 @@ impl BodyParts<'_> {
         let known = bound.damping == Damping::Proportional && bound.least_ratio == least;
         // What springs do not damp at all, mass damps evenly.
         if known || most == 0.0 || self.has_spring_without_length() {
+            return None;
+        }
+        if bound.loss_per_step.is_some() && coordinate_count(self) > MOST_BY_STEP {
             return None;
         }
         let limit = polynomial_limit(&Linear::of_few(self, time, across)?, order)?;
