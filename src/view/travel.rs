@@ -18,6 +18,14 @@ pub(super) struct Travels {
     pub middle: Vec3,
 }
 
+impl Travels {
+    /// How far from home it is while the camera looks at `focus`.
+    fn offset(self, focus: Vec3) -> Vec3 {
+        let away = focus - self.middle;
+        if self.every > 0.0 { (away / self.every).round() * self.every } else { away }
+    }
+}
+
 /// No further away does the camera go by itself: animals that are further apart than it then sees are too small to be looked at together.
 const FARTHEST: f32 = 100.0;
 
@@ -95,12 +103,41 @@ fn further(distance: f32, apart: f32) -> f32 {
 
 fn travel(cameras: Query<&PanOrbitCamera, With<SceneCamera>>, mut things: Query<(&Travels, &mut Transform)>) {
     let Some(orbit) = cameras.iter().next() else { return };
-    for (&Travels { every, middle }, mut transform) in &mut things {
-        let away = orbit.focus - middle;
-        let there = if every > 0.0 { (away / every).round() * every } else { away };
-        let there = there.with_y(transform.translation.y);
+    for (travels, mut transform) in &mut things {
+        let there = travels.offset(orbit.focus).with_y(transform.translation.y);
         if transform.translation != there {
             transform.translation = there;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn patches_of_a_tile_are_always_all_around_what_is_looked_at() {
+        let (every, side) = (96.0, 16.0);
+        let corners = (0..36).map(|i| Vec3::new((i % 6) as f32, 0.0, (i / 6) as f32));
+        let middles: Vec<_> = corners.map(|corner| (corner + Vec3::new(0.5, 0.0, 0.5)) * side - 48.0).collect();
+        for focus in [Vec3::ZERO, Vec3::new(7.0, 2.0, -300.5), Vec3::new(1e4, 0.0, 49.0)] {
+            let mut taken: Vec<_> = middles
+                .iter()
+                .map(|&middle| {
+                    let there = middle + Travels { every, middle }.offset(focus);
+                    let off = there - focus;
+                    assert!(
+                        off.x.abs() <= 0.5 * every && off.z.abs() <= 0.5 * every,
+                        "{middle} at {there} for {focus}"
+                    );
+                    // A tile further on all looks the same.
+                    assert_eq!(((there - middle) / every).fract().with_y(0.0), Vec3::ZERO);
+                    ((there.x / side).floor() as i32, (there.z / side).floor() as i32)
+                })
+                .collect();
+            taken.sort_unstable();
+            taken.dedup();
+            assert_eq!(taken.len(), middles.len(), "two patches in one place for {focus}");
         }
     }
 }
