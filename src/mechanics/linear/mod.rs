@@ -28,10 +28,11 @@ pub(crate) use search::{MOST, bisect, first_unstable};
 
 /// A direction in which nothing resists counts as none below this part of the stiffest.
 const NOTHING: f64 = 1e-10;
-/// The eigenvalues of bodies of more coordinates take longer than a gauge can wait.
+/// The eigenvalues of bodies of more coordinates take longer than a third of a second.
 const MOST_COORDINATES: usize = 400;
 /// The stiffest direction is found to this part of its stiffness.
 const PRECISION: f64 = 1e-7;
+
 /// Whether springs resist across their lines, by k(1 − L/l), as stretched ones do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Across {
@@ -75,7 +76,8 @@ impl Linear {
         Self::of_few(&body, 0.0, Across::Resisted).or_else(|| Self::stiffest(&body))
     }
 
-    /// Linearises a body in its present pose, with its rest lengths as at `time`; nothing for one of more coordinates than can be had all eigenvalues of.
+    /// Linearises a body in its present pose, with its rest lengths as at `time`; nothing for one with too many coordinates
+    /// for all of its eigenvalues to be found.
     pub(crate) fn of_few(body: &BodyParts<'_>, time: f64, across: Across) -> Option<Self> {
         if coordinate_count(body) > MOST_COORDINATES {
             return None;

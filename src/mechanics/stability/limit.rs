@@ -26,10 +26,10 @@ impl BodyParts<'_> {
         found.unwrap_or_else(|| self.method.stability_limit(&bound))
     }
 
-    /// The dt above which to expect that it explodes: the [limit](Self::stability_limit), but for explicit Euler and RK2 while springs are stretched. Nothing damps a motion
-    /// across a taut spring, so those two often grow at any step then. Such motions are slow and grow slowly, or friction holds them; this is the limit
-    /// of motions along the springs. A body that nothing but taut springs holds for good, such as a pendulum, does grow below it. 0 for a larger body with a spring that is
-    /// not damped beside others that are.
+    /// The dt above which to expect that it explodes: the [limit](Self::stability_limit), but for explicit Euler and RK2 while springs are stretched.
+    /// Nothing damps a motion across a taut spring, so those two often grow at any step then. Such motions are slow and grow slowly, or friction holds
+    /// them; this is the limit of motions along the springs. A body that nothing but taut springs holds for good, such as a pendulum, does grow below it.
+    /// 0 for a larger body with a spring that is not damped beside others that are.
     pub fn alarm_limit(&self, time: f64) -> f64 {
         let [least_ratio, _] = ratios(self);
         let bound = stability_bound(self, time);
