@@ -26,6 +26,7 @@ mod jelly_springs;
 mod lab;
 mod laws;
 mod limits;
+mod limits_shipped;
 mod methods;
 #[cfg(feature = "window")]
 mod panel;

@@ -36,7 +36,7 @@ pub fn linearised_limit(body: &BodyParts<'_>) -> Option<f64> {
     // The iteration watches an energy, which nothing has where no spring is.
     let iterated = count > most && linear.is_stiff();
     let calm = |dt| match iterated {
-        true if body.bare().on_axis() => is_calm::<1>(body, &linear, dt),
+        true if linear.dimensions == 1 => is_calm::<1>(body, &linear, dt),
         true => is_calm::<3>(body, &linear, dt),
         false => growth_of(body, &linear, dt).map(|growth| growth <= 1.0 + ROUNDING),
     };
@@ -63,8 +63,7 @@ pub fn growth(body: &BodyParts<'_>, dt: f64) -> Option<f64> {
 }
 
 pub(super) fn growth_of(body: &BodyParts<'_>, linear: &Linear, dt: f64) -> Option<f64> {
-    let on_axis = body.bare().on_axis();
-    let matrix = if on_axis { matrix::<1>(body, linear, dt)? } else { matrix::<3>(body, linear, dt)? };
+    let matrix = if linear.dimensions == 1 { matrix::<1>(body, linear, dt)? } else { matrix::<3>(body, linear, dt)? };
     if matrix.col_iter().any(|column| column.iter().any(|value| !value.is_finite())) {
         return Some(f64::INFINITY);
     }

@@ -75,6 +75,9 @@ fn problem(error: &differential_equations::error::Error<f64, Vec<f64>>) -> Strin
 
 /// Gauss–Legendre collocation with three stages, order 6, in fixed steps, its equations solved by iteration until nothing changes. Source: E. Hairer,
 /// S. P. Nørsett, G. Wanner, "Solving Ordinary Differential Equations I", II.7, table 7.4.
+///
+/// The Radau5 of the crate that has DOP853 does not serve: its version 0.7 panics on states whose size is known only when it runs, and at a tolerance of
+/// 1e-12 it is 3e-9 off after 10 units of time of x'' = −x.
 pub(super) struct Gauss {
     /// The largest step.
     step: f64,

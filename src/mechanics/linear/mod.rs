@@ -45,6 +45,8 @@ pub(crate) enum Across {
 /// The linearised body, without friction, contact and gravity.
 #[derive(Clone, Debug)]
 pub(crate) struct Linear {
+    /// How many axes its particles can move along: one for a body on an axis that no gravity and no ground moves off.
+    pub(crate) dimensions: usize,
     /// The coordinates that can change.
     pub(crate) coordinates: Vec<Coordinate>,
     /// Columns: the directions that springs resist or damp, orthonormal; of a large body the stiffest alone.
@@ -72,18 +74,21 @@ pub(crate) struct Linear {
 impl Linear {
     /// Linearises the body in its present pose with its muscles at rest; nothing where its eigenvalues cannot be found.
     pub(crate) fn of(body: &BodyParts<'_>) -> Option<Self> {
-        let body = body.bare();
-        Self::of_few(&body, 0.0, Across::Resisted).or_else(|| Self::stiffest(&body))
+        let (dimensions, body) = (dimensions(body), body.bare());
+        Self::full(&body, dimensions, 0.0, Across::Resisted).or_else(|| Self::stiffest(&body, dimensions))
     }
 
     /// Linearises a body in its present pose, with its rest lengths as at `time`; nothing for one with too many coordinates
     /// for all of its eigenvalues to be found.
     pub(crate) fn of_few(body: &BodyParts<'_>, time: f64, across: Across) -> Option<Self> {
-        if coordinate_count(body) > MOST_COORDINATES {
+        Self::full(body, dimensions(body), time, across)
+    }
+
+    fn full(body: &BodyParts<'_>, dimensions: usize, time: f64, across: Across) -> Option<Self> {
+        let coordinates = coordinates(body, dimensions);
+        if coordinates.len() > MOST_COORDINATES {
             return None;
         }
-        let dimensions = dimensions(body);
-        let coordinates = coordinates(body, dimensions);
         let (springs, damping) = matrices(body, &rest_lengths(body, time), dimensions, &coordinates, across)?;
         let (stiffness, damping) = (springs.to_dense(), damping.to_dense());
         let (hardest, most) = (largest(&stiffness), largest(&damping));
@@ -112,6 +117,7 @@ impl Linear {
             following.as_ref().map_or_else(|| stiffness.clone(), |following| &stiffness + within(following));
         let (symmetric, mass_damping) = (following.is_none(), body.mass_damping);
         Some(Self {
+            dimensions,
             coordinates,
             resisted,
             springs,
@@ -127,8 +133,7 @@ impl Linear {
     }
 
     /// The stiffest direction of a large body; nothing for one whose rest lengths follow its pose.
-    fn stiffest(body: &BodyParts<'_>) -> Option<Self> {
-        let dimensions = dimensions(body);
+    fn stiffest(body: &BodyParts<'_>, dimensions: usize) -> Option<Self> {
         let coordinates = coordinates(body, dimensions);
         if body.strand.is_some_and(Strand::bulge) {
             return None;
@@ -142,6 +147,7 @@ impl Linear {
         let drifting = usize::from(none_is_pinned);
         let mass: f64 = body.particles.masses().iter().sum();
         Some(Self {
+            dimensions,
             resisted: Mat::from_fn(count, 1, |i, _| direction[i]),
             springs,
             stiffest: direction.iter().copied().collect(),
