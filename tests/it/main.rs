@@ -27,6 +27,7 @@ mod lab;
 mod laws;
 mod limits;
 mod limits_shipped;
+mod limits_uneven;
 mod methods;
 #[cfg(feature = "window")]
 mod panel;

@@ -29,7 +29,7 @@ pub(crate) use search::{MOST, bisect, first_unstable};
 /// A direction in which nothing resists counts as none below this part of the stiffest.
 const NOTHING: f64 = 1e-10;
 /// The eigenvalues of bodies of more coordinates take longer than a third of a second.
-const MOST_COORDINATES: usize = 400;
+pub(crate) const MOST_COORDINATES: usize = 400;
 /// The stiffest direction is found to this part of its stiffness.
 const PRECISION: f64 = 1e-7;
 
@@ -90,6 +90,10 @@ impl Linear {
             return None;
         }
         let (springs, damping) = matrices(body, &rest_lengths(body, time), dimensions, &coordinates, across)?;
+        // Of what is not finite nothing can be found.
+        if springs.val().iter().chain(damping.val()).any(|value| !value.is_finite()) {
+            return None;
+        }
         let (stiffness, damping) = (springs.to_dense(), damping.to_dense());
         let (hardest, most) = (largest(&stiffness), largest(&damping));
         let either = Mat::from_fn(coordinates.len(), coordinates.len(), |i, j| {
@@ -105,7 +109,8 @@ impl Linear {
         let free = columns(&|value| value <= NOTHING);
         let within = |matrix: &Mat<f64>| resisted.transpose() * matrix * &resisted;
         let following = following(body, time, dimensions, &coordinates);
-        let norm = |matrix: &Mat<f64>| spectrum(matrix).map(|values| values.into_iter().fold(0.0, f64::max));
+        let norm =
+            |matrix: &Mat<f64>| spectrum(matrix).map(|values| values.into_iter().map(f64::abs).fold(0.0, f64::max));
         let (stiffness, damping) = (within(&stiffness), within(&damping));
         let stiffest = match stiffness.ncols() {
             0 => Col::zeros(coordinates.len()),

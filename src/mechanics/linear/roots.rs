@@ -15,8 +15,13 @@ const ROUNDING: f64 = 1e-11;
 const PRECISION: f64 = 1e-9;
 /// A root whose damping is below this part of it is not damped.
 const UNDAMPED: f64 = 1e-9;
+/// One that grows by more than this part of it a unit of time does so by itself; less may be rounding.
+const GROWING: f64 = 1e-6;
+/// What moves at less than this part of the fastest rate is not told from what nothing moves.
+const SLOWEST: f64 = 1e-6;
 
-/// The largest step at which |R(hμ)| ≤ 1 for all roots μ. Infinite where no step is unstable; nothing where the roots cannot be found.
+/// The largest step at which |R(hμ)| ≤ 1 for all roots μ but those of what grows by itself. Infinite where no step is unstable; nothing where the roots
+/// cannot be found.
 pub(crate) fn polynomial_limit(linear: &Linear, order: u32) -> Option<f64> {
     let per_step = matches!(linear.mass_damping, Some(MassDamping::PerStep(_)));
     let fixed = if per_step { None } else { Some(roots(linear, 1.0)?) };
@@ -45,7 +50,7 @@ fn gain(z: c64, order: u32) -> f64 {
     2.0 * more.re + more.norm_sqr()
 }
 
-/// The roots of μ² + μC + K with the damping by mass that it has at steps of `dt`, without those of what nothing moves.
+/// The roots of μ² + μC + K with the damping by mass that it has at steps of `dt`, without those of what nothing moves and of what grows by itself.
 fn roots(linear: &Linear, dt: f64) -> Option<Vec<c64>> {
     let (count, rate) = (linear.stiffness.nrows(), linear.mass_rate(dt));
     let mut roots = match modes(linear) {
@@ -64,7 +69,7 @@ fn roots(linear: &Linear, dt: f64) -> Option<Vec<c64>> {
         }
     };
     let fastest = roots.iter().map(|root| root.norm()).fold(0.0, f64::max);
-    roots.retain(|root| root.norm() > 1e-6 * fastest);
+    roots.retain(|root| root.norm() > SLOWEST * fastest && root.re <= GROWING * root.norm());
     if linear.free.ncols() > 0 && rate > 0.0 {
         roots.push(c64::new(-rate, 0.0));
     }
@@ -80,7 +85,7 @@ fn modes(linear: &Linear) -> Option<Vec<(f64, f64)>> {
         return None;
     }
     let ratio = damping / stiffness;
-    let small = 1e-10 * stiffness.max(damping);
+    let small = 1e-10 * damping;
     let same = |i, j| (linear.damping[(i, j)] - ratio * linear.stiffness[(i, j)]).abs() <= small;
     let proportional = linear.symmetric && (0..count).all(|i| (0..count).all(|j| same(i, j)));
     let values = if proportional { spectrum(&linear.stiffness)? } else { return None };

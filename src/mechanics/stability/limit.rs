@@ -7,29 +7,30 @@
 use crate::mechanics::{
     BodyParts,
     integrators::Method,
-    linear::{Across, Linear, coordinate_count, polynomial_limit},
+    linear::{Across, Linear, MOST_COORDINATES, coordinate_count, polynomial_limit},
 };
 
 use super::{Damping, StabilityBound, ratios, stability_bound};
 
-/// What the gauge of a running scene waits for has no more coordinates than this: some fiftieth of a second.
-const MOST_WHILE_RUNNING: usize = 200;
-/// Nor has one whose roots are others at every step, so that they are found some forty times.
-const MOST_BY_STEP: usize = 60;
+/// The most coordinates of a body whose roots the gauge of a running scene waits for: some thousandth of a second.
+const MOST_WHILE_RUNNING: usize = 60;
+/// Roots that are others at every step are found some fifty times, which takes as long as those of a body so many times as large once.
+const BY_STEP: usize = 4;
 
 impl BodyParts<'_> {
     /// The largest dt at which the body's method is stable in its present pose, with its rest lengths as at `time`: never above the true limit of
-    /// the linearised body. Infinite for a body that cannot oscillate.
+    /// the linearised body, but for motions that take 10⁵ times as long as the fastest and are hardly damped, which rounding hides.
+    /// What grows by itself, as a squeezed chain buckles, grows at any step and is left out. Infinite for a body that cannot oscillate.
     pub fn stability_limit(&self, time: f64) -> f64 {
         let bound = stability_bound(self, time);
-        let found = self.limit_by_roots(&bound, time, Across::Resisted);
+        let found = self.limit_by_roots(&bound, time, Across::Resisted, MOST_COORDINATES);
         found.unwrap_or_else(|| self.method.stability_limit(&bound))
     }
 
     /// The dt above which to expect that it explodes: the [limit](Self::stability_limit), but for explicit Euler and RK2 while springs are stretched.
     /// Nothing damps a motion across a taut spring, so those two often grow at any step then. Such motions are slow and grow slowly, or friction holds
     /// them; this is the limit of motions along the springs. A body that nothing but taut springs holds for good, such as a pendulum, does grow below it.
-    /// 0 for a larger body with a spring that is not damped beside others that are.
+    /// 0 for a body of more than 20 particles, or one that feels friction, with a spring that is not damped beside others that are.
     pub fn alarm_limit(&self, time: f64) -> f64 {
         let [least_ratio, _] = ratios(self);
         let bound = stability_bound(self, time);
@@ -37,38 +38,38 @@ impl BodyParts<'_> {
             None => self.method.stability_limit(&bound),
             Some(_) => {
                 let bound = StabilityBound { least_ratio, ..bound };
-                let is_small = coordinate_count(self) <= MOST_WHILE_RUNNING;
-                let along = if is_small { self.limit_by_roots(&bound, time, Across::Ignored) } else { None };
+                let along = self.limit_by_roots(&bound, time, Across::Ignored, MOST_WHILE_RUNNING);
                 along.unwrap_or_else(|| self.method.stability_limit(&bound))
             }
         }
     }
 
     /// The limit of explicit Euler and RK2 where the bound does not know how little may be damped. Nothing for other methods and where it does know, and
-    /// for bodies whose roots are too many.
-    fn limit_by_roots(&self, bound: &StabilityBound, time: f64, across: Across) -> Option<f64> {
+    /// for bodies of more than `most` coordinates.
+    fn limit_by_roots(&self, bound: &StabilityBound, time: f64, across: Across, most: usize) -> Option<f64> {
         let order = order(self.method)?;
-        let [least, most] = ratios(self);
-        let known = bound.damping == Damping::Proportional && bound.least_ratio == least;
+        let [least_ratio, most_ratio] = ratios(self);
+        let known = bound.damping == Damping::Proportional && bound.least_ratio == least_ratio;
         // What springs do not damp at all, mass damps evenly.
-        if known || most == 0.0 || self.has_spring_without_length() {
+        if known || most_ratio == 0.0 || self.has_spring_without_length() {
             return None;
         }
-        if bound.loss_per_step.is_some() && coordinate_count(self) > MOST_BY_STEP {
+        // Friction holds now these masses and now those, and what swings then has other roots. The bound counts it in whichever way it acts.
+        if bound.friction > 0.0 {
             return None;
         }
-        let limit = polynomial_limit(&Linear::of_few(self, time, across)?, order)?;
-        // Nor does it know which motions friction damps besides. What decays at a rate is stable up to twice its time.
-        let springs = bound.rates.iter().map(|rates| rates.damping).fold(0.0, f64::max);
-        let fastest = springs + bound.mass_damping + bound.friction;
-        Some(if bound.friction > 0.0 { limit.min(2.0 / fastest) } else { limit })
+        let most = if bound.loss_per_step.is_some() { most / BY_STEP } else { most };
+        if coordinate_count(self) > most {
+            return None;
+        }
+        polynomial_limit(&Linear::of_few(self, time, across)?, order)
     }
 
     /// A spring of no length resists in any direction, which no matrix does.
     fn has_spring_without_length(&self) -> bool {
         self.springs.iter().any(|spring| {
-            let [a, b] = spring.ends.map(|end| self.particles.position(end));
-            a == b
+            let [a, b] = spring.ends.map(|end| self.particles.position(end).unwrap_or_default());
+            a.distance(b) == 0.0
         })
     }
 }
