@@ -87,7 +87,7 @@ fn steps_per_tick(ui: &mut egui::Ui, settings: &mut Settings) {
         ui.label(RichText::new(format!("of {} s", number_text(settings.tick))).small().weak());
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             ui.add_space(26.0);
-            entered = row::field(ui, &mut settings.steps_draft, shown.clone(), "steps a tick", 64.0);
+            entered = row::field(ui, &mut settings.steps_draft, shown.clone(), "steps a tick", 80.0);
         });
     });
     if let Some(text) = entered.filter(|text| *text != shown) {

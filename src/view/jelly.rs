@@ -20,6 +20,8 @@ use crate::{
 
 /// How much of what is behind it the skin covers.
 const OPACITY: f32 = 0.82;
+/// How far the skin is from the masses, in lengths: what lies flat on the ground would otherwise be drawn in the plane of the ground, now above it and now below.
+const THICKNESS: f32 = 0.05;
 
 /// The skin that a block wears.
 #[derive(Component)]
@@ -80,12 +82,15 @@ pub(super) fn follow(
                 normals[*corner as usize] += normal;
             }
         }
+        normals.iter_mut().for_each(|normal| *normal = normal.normalize_or(Vec3::Y));
         if let Some(VertexAttributeValues::Float32x3(values)) = mesh.attribute_mut(Mesh::ATTRIBUTE_POSITION) {
-            values.clone_from(positions);
+            values.clear();
+            let outwards = positions.iter().zip(&*normals);
+            values.extend(outwards.map(|(at, normal)| (Vec3::from(*at) + THICKNESS * *normal).to_array()));
         }
         if let Some(VertexAttributeValues::Float32x3(values)) = mesh.attribute_mut(Mesh::ATTRIBUTE_NORMAL) {
             values.clear();
-            values.extend(normals.iter().map(|normal| normal.normalize_or(Vec3::Y).to_array()));
+            values.extend(normals.iter().map(Vec3::to_array));
         }
     }
 }

@@ -30,18 +30,18 @@ pub(in crate::view) fn sky() -> Clay {
     clay
 }
 
-/// Heaps of soft balls with flat feet.
+/// Heaps of soft balls with flat feet, behind the hills.
 pub(in crate::view) fn clouds(random: &mut SmallRng, quality: Quality) -> Clay {
     let mut clay = Clay::default();
     for i in 0..13 {
         let around = TAU * (i as f32 + between(random, -0.3, 0.3)) / 13.0;
         let (out, up) = (
-            between(random, 95.0, 135.0),
-            if i % 3 == 0 { between(random, 30.0, 50.0) } else { between(random, 12.0, 24.0) },
+            between(random, 142.0, 162.0),
+            if i % 3 == 0 { between(random, 40.0, 65.0) } else { between(random, 17.0, 33.0) },
         );
         let at = Vec3::new(around.cos() * out, up, around.sin() * out);
         let across = Vec3::new(-around.sin(), 0.0, around.cos());
-        let size = between(random, 2.6, 4.6);
+        let size = between(random, 3.6, 6.2);
         for puff in 0..9 {
             let t = puff as f32 / 8.0 * 2.0 - 1.0;
             let big = size * (1.15 - 0.75 * t * t) * between(random, 0.75, 1.1);
