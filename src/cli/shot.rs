@@ -16,7 +16,7 @@ use crate::{
 pub(super) struct ShotArguments {
     /// A scene or creature by name or file
     scene: String,
-    /// When, in simulated time; a whole number of dt [default: the moment at which the scene opens, or 0]
+    /// When, in simulated time; the nearest step is drawn [default: the moment at which the scene opens, or 0]
     #[arg(long, allow_negative_numbers = true, value_name = "T", value_parser = values::non_negative)]
     at: Option<f64>,
     /// Width and height in pixels
@@ -35,10 +35,26 @@ pub(super) fn shot(arguments: &ShotArguments) -> Result<Outcome, CliError> {
     let scene = scenes::load(&arguments.scene)?;
     let clock = scene.file.clock;
     let steps = match arguments.at {
-        Some(at) => values::steps_of_flag("--at", at, clock.dt()).map_err(CliError::Usage)?,
+        Some(at) => {
+            let (steps, time) = nearest_steps(at, clock.dt()).map_err(CliError::Usage)?;
+            if time != at {
+                eprintln!("--at {at}: drawn at {time}, the nearest end of a step of dt {}", clock.dt());
+            }
+            steps
+        }
         None => clock.opening_steps(),
     };
     draw(scene, steps, arguments)
+}
+
+/// How many steps of `dt` end nearest to `time`, and when that is.
+fn nearest_steps(time: f64, dt: f64) -> Result<(u64, f64), String> {
+    let steps = (time / dt).round();
+    if steps > values::MOST_STEPS {
+        Err(values::too_many_steps("--at", time, dt))
+    } else {
+        Ok((steps as u64, values::time_of(steps, dt)))
+    }
 }
 
 /// Draws `scene` after `steps`.
@@ -89,4 +105,17 @@ fn size(text: &str) -> Result<(u32, u32), String> {
     text.split_once('x')
         .and_then(|(width, height)| side(width).zip(side(height)))
         .ok_or_else(|| format!("give WIDTHxHEIGHT, such as 1280x720, each from 1 to {MOST}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_nearest_step_is_the_one_that_ends_nearest() {
+        assert_eq!(nearest_steps(300.0, 0.022), Ok((13_636, 299.992)));
+        assert_eq!(nearest_steps(300.01, 0.022), Ok((13_637, 300.014)));
+        assert_eq!(nearest_steps(0.9, 0.3), Ok((3, 0.9)));
+        assert!(nearest_steps(1e300, 0.022).is_err_and(|text| text.contains("shorter time")));
+    }
 }

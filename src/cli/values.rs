@@ -48,19 +48,29 @@ pub(super) fn whole_steps(time: f64, dt: f64) -> Option<u64> {
     (whole <= MOST && (steps - whole).abs() <= tolerance).then_some(whole as u64)
 }
 
+/// More steps than anyone waits for.
+pub(super) const MOST_STEPS: f64 = 1e12;
+
 /// As [`whole_steps`], with a message that has the flag and the nearest times that fit.
 pub(super) fn steps_of_flag(flag: &str, time: f64, dt: f64) -> Result<u64, String> {
     whole_steps(time, dt).ok_or_else(|| {
         let below = (time / dt).floor();
-        if below > 1e12 {
-            return format!("{flag} {time:e} is {below:e} steps of dt {dt:e}; give a shorter time or a larger dt");
+        if below > MOST_STEPS {
+            return too_many_steps(flag, time, dt);
         }
-        // Without the rounding errors of a product: the nearest number of twelve digits is taken for the same time.
-        let shown = |steps: f64| {
-            let time = steps * dt;
-            format!("{time:.11e}").parse().unwrap_or(time)
-        };
-        let (before, after) = (shown(below), shown(below + 1.0));
+        let (before, after) = (time_of(below, dt), time_of(below + 1.0, dt));
         format!("{flag} {time} is no whole number of steps of dt {dt}; the nearest that are: {before} and {after}")
     })
+}
+
+/// Says that a time takes too many steps.
+pub(super) fn too_many_steps(flag: &str, time: f64, dt: f64) -> String {
+    let steps = (time / dt).floor();
+    format!("{flag} {time:e} is {steps:e} steps of dt {dt:e}; give a shorter time or a larger dt")
+}
+
+/// When so many steps have ended. Without the rounding errors of a product: the nearest number of twelve digits is taken for the same time.
+pub(super) fn time_of(steps: f64, dt: f64) -> f64 {
+    let time = steps * dt;
+    format!("{time:.11e}").parse().unwrap_or(time)
 }

@@ -106,9 +106,9 @@ fn decorate(
         Props::Garden { seed } => garden::plant(seed, *quality, &mut commands, &mut meshes, &mut paints),
         Props::None => match &scene.file.ground {
             Some(ground) => {
-                let scenes::Camera::Orbit { target: (x, y, z), .. } = scene.file.camera;
-                let middle = DVec3::new(x, y, z).as_vec3();
-                meadow::set_up(ground, middle, *quality, &mut commands, &mut meshes, &mut paints);
+                let scenes::Camera::Orbit { target: (x, y, z), distance, .. } = scene.file.camera;
+                let place = meadow::Place { middle: DVec3::new(x, y, z).as_vec3(), distance: distance as f32 };
+                meadow::set_up(ground, place, *quality, &mut commands, &mut meshes, &mut paints);
             }
             None => studio::set_up(six::lowest(roads.iter()), *quality, &mut commands, &mut meshes, &mut paints),
         },

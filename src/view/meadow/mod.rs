@@ -36,16 +36,23 @@ const WALL: [f32; 2] = [3.0, 200.0];
 /// A plane whose normal rises less than this stands upright, as a wall.
 const UPRIGHT: f64 = 0.1;
 
+/// What is looked at, and from how far away.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Place {
+    pub middle: Vec3,
+    pub distance: f32,
+}
+
 /// Spawns the ground, what grows and lies on it, and the sky.
 pub(super) fn set_up(
     ground: &Ground,
-    middle: Vec3,
+    place: Place,
     quality: Quality,
     commands: &mut Commands,
     meshes: &mut Assets<Mesh>,
     paints: &mut Assets<Paint>,
 ) {
-    let shadows = quality.shadows();
+    let (middle, shadows) = (place.middle, quality.shadows());
     let mut random = SmallRng::seed_from_u64(4);
     // A plain looks the same a tile further on; what has edges, rounds and patches is one place.
     let tile = (*ground == Ground::Flat).then_some(Travels { every: TILE, middle: Vec3::ZERO });
@@ -83,7 +90,7 @@ pub(super) fn set_up(
         (-1..=1).flat_map(|x| (-1..=1).map(move |z| Vec3::new(x as f32, 0.0, z as f32) * TILE)).collect();
     let places = if tile.is_some() { &around[..] } else { &here };
     spawn(leaves, Paint::leafy(shadows), false, tile, places);
-    for (middle, blades) in turf::patches(&lying, middle, quality, &mut random) {
+    for (middle, blades) in turf::patches(&lying, place, quality, &mut random) {
         spawn(blades, Paint::leafy(shadows), false, tile.map(|tile| Travels { middle, ..tile }), &here);
     }
     spawn(stones, Paint::matte(shadows), true, tile, places);
