@@ -41,14 +41,21 @@ pub(super) fn chart(arguments: &ChartArguments) -> Result<Outcome, CliError> {
         for warning in &scene.warnings {
             eprintln!("warning: {warning}");
         }
-        let problem = Problem::of(scene)?;
+        // A scene that cannot be charted leaves the others their charts.
+        let problem = match Problem::of(scene) {
+            Err(error @ LabError::Unsupported { .. }) => {
+                eprintln!("{error}; it gets no chart");
+                continue;
+            }
+            problem => problem?,
+        };
         let key = key(&problem, &options);
         let finished = gallery.finished(name, &key);
         let is_new = finished.is_none();
         let chart = match finished {
             Some(chart) => chart,
             None => match measured(&problem, &options, &gallery, &key) {
-                // A scene that has no reference leaves the others their charts.
+                // Nor does one that has no reference take them from others.
                 Err(CliError::Lab(error @ LabError::Unsupported { .. })) => {
                     eprintln!("{error}; it gets no chart");
                     continue;

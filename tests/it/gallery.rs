@@ -162,6 +162,14 @@ fn the_command_measures_a_scene_once() {
     assert!(String::from_utf8_lossy(&output.stdout).contains("runs, measured before;"));
     assert_eq!(fs::read_to_string(charts.join("pair.csv")).unwrap(), table);
     assert_eq!(fs::read_to_string(charts.join("pair-stiffness.csv")).unwrap(), stiffness);
+    // What cannot be charted is said, and takes no chart from the others.
+    let output = run(folder.path(), &["flat-strip", "pair.creature.ron", "--out", "charts", "--quick"]);
+    let (said, written) = (String::from_utf8_lossy(&output.stderr), String::from_utf8_lossy(&output.stdout));
+    assert!(
+        output.status.code() == Some(0) && said.contains("flat-strip") && said.contains("it gets no chart"),
+        "{said}"
+    );
+    assert!(written.contains("pair: ") && written.contains("all charts: "), "{written}");
 }
 
 #[test]
