@@ -15,6 +15,7 @@ mod forces;
 mod friction;
 mod ground;
 pub mod integrators;
+mod kinks;
 mod lattice;
 pub(crate) mod linear;
 pub mod metrics;

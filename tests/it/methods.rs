@@ -143,6 +143,31 @@ fn located_events_keep_the_order() {
     }
 }
 
+#[test]
+fn located_events_keep_the_order_across_the_ends_of_ramps_and_the_switches_of_square_waves() {
+    use wriggle::body::{Muscle, Muscles, Wave};
+    // A ramp ends at 6, square waves switch at 1.5, 3, 4.5, 6 and 7.5: within steps, by all of these.
+    let end = |method, wave, dt: f64| {
+        let mut body = Worm { method, ..Worm::GARDEN }.body();
+        let muscles: Vec<_> = body.muscles.iter().map(|muscle| Muscle { wave, ..muscle }).collect();
+        body.muscles = Muscles::new(muscles, &body.springs).unwrap();
+        let mut app = stepping_app(dt, (9.0 / dt).round() as u64);
+        let entity = app.world_mut().spawn((body, StickRule::Located)).id();
+        app.update();
+        columns(particles(&app, entity))
+    };
+    for wave in [Wave::Sine, Wave::Square] {
+        let exact = end(Method::ExactFlow, wave, 9.0);
+        for method in Method::ALL.into_iter().filter(|method| method.locates()) {
+            let error = |halvings| farthest(&end(method, wave, 9.0 / f64::from(91 << halvings)), &exact);
+            let errors: Vec<_> = (0..5).map(error).collect();
+            let observed = libm::log2(errors[0] / errors[4]) / 4.0;
+            let order = f64::from(method.about().order);
+            assert!((observed - order).abs() < 0.1, "{wave:?}, {method:?}: order {observed} of {errors:?}");
+        }
+    }
+}
+
 /// Three masses in a triangle whose spine turns while friction holds some of them, in space.
 fn triangle(method: Method, stick: StickRule, dt: f64) -> Vec<f64> {
     use wriggle::body::{Muscle, Muscles, SpineFriction, SpringId, Wave};

@@ -10,7 +10,7 @@
 mod events;
 mod series;
 
-use crate::mechanics::{Model, State, forces::direction};
+use crate::mechanics::{Model, State, forces::direction, kinks::until_kink};
 
 use super::{About, Integrator};
 use events::Event;
@@ -89,7 +89,7 @@ impl<const D: usize> Integrator<f64, D> for ExactFlow {
             }
             self.series.begin(model, state, time + at);
             self.clamp(model);
-            let length = self.series.until_kink(model, time + at, longest.min(model.dt - at));
+            let length = until_kink(&model.muscles, time + at, longest.min(model.dt - at));
             self.settle(model, state);
             self.series.extend(model, &self.slide, &self.side, &self.clamped, length);
             model.evaluations += self.series.terms() as f64;

@@ -7,22 +7,29 @@
 //!
 //! An event is located on a parabola through sliding speeds, or on a line through the pushes of two stages. It is late or early by O(dt²) or less, and
 //! what that does is of the square of it: a mass that comes to rest hardly moves then, and one that starts to slip hardly has a push. So
-//! location costs no evaluation beyond those of the steps that it parts. Source: E. Hairer, S. P. Nørsett, G. Wanner, "Solving ordinary differential equations I"
-//! (1993), II.6, for the parting of steps at discontinuities.
+//! location costs no evaluation beyond those of the steps that it parts.
+//!
+//! A step is also parted where the drive of a muscle is not smooth: at the end of a ramp, and where a square wave switches. The stages of a piece see the
+//! wave as it is within that piece. The waves of a strand are taken as they come. Source: E. Hairer, S. P. Nørsett, G. Wanner, "Solving ordinary
+//! differential equations I" (1993), II.6, for the parting of steps at discontinuities.
 
 use core::marker::PhantomData;
 
-use crate::mechanics::{
-    Model, State,
-    friction::{dot, subtract},
-    model::SpineRow,
+use crate::{
+    body::Wave,
+    mechanics::{
+        Model, State,
+        friction::{dot, subtract},
+        kinks::{instant, until_kink},
+        model::SpineRow,
+    },
 };
 
 use super::{Integrator, stages::Stage};
 
 /// A push that would stop a mass within this part of the step holds it: rounding errors must not decide.
 const AT_ONCE: f64 = 1e-9;
-/// So many events a mass are located in a step; what is left of it then is taken as it comes.
+/// So many events a mass are located between two kinks of a step; what is left of it then is taken as it comes.
 const EVENTS_A_MASS: usize = 4;
 
 /// A method that is nothing but its stages.
@@ -60,6 +67,8 @@ pub struct Located<S, const D: usize> {
     sum: State<f64, D>,
     /// One a row of the spine.
     modes: Vec<Mode>,
+    /// Forces are evaluated at times in between only: at the moment at which a square wave switches, it is on neither side.
+    window: [f64; 2],
     method: PhantomData<S>,
 }
 
@@ -72,6 +81,7 @@ impl<S: Staged, const D: usize> Integrator<f64, D> for Located<S, D> {
             acceleration: vec![[0.0; D]; particles],
             sum: state(),
             modes: Vec::new(),
+            window: [0.0; 2],
             method: PhantomData,
         }
     }
@@ -80,31 +90,15 @@ impl<S: Staged, const D: usize> Integrator<f64, D> for Located<S, D> {
         // The pieces hold masses themselves; what else friction does is a force.
         let ratchet = model.friction.as_mut().is_some_and(|friction| core::mem::replace(&mut friction.ratchet, false));
         self.modes.resize(if ratchet { model.spine.len() } else { 0 }, Mode::default());
-        let (mut done, mut last) = (0.0, None);
-        for _ in 0..EVENTS_A_MASS * self.modes.len() {
+        let mut done = 0.0;
+        loop {
             let left = model.dt - done;
-            // The pieces up to an event at the very end may add up to more than the step, by a rounding error.
-            if left <= 0.0 {
+            let smooth = until_kink(&model.muscles, time + done, left);
+            self.smooth(model, state, time + done, smooth);
+            done += smooth;
+            if smooth >= left {
                 break;
             }
-            self.start.clone_from(state);
-            self.piece(model, state, time + done, left, last);
-            let Some((at, event)) = self.first_event(model, state, left) else {
-                done = model.dt;
-                break;
-            };
-            state.clone_from(&self.start);
-            if at > 0.0 {
-                self.piece(model, state, time + done, at, last);
-                done += at;
-            }
-            if let Event::Rests(row) = event {
-                hold(model, model.spine[row], state);
-            }
-            last = Some(event);
-        }
-        if done < model.dt {
-            self.piece(model, state, time + done, model.dt - done, last);
         }
         if let Some(friction) = &mut model.friction {
             friction.ratchet = ratchet;
@@ -115,6 +109,36 @@ impl<S: Staged, const D: usize> Integrator<f64, D> for Located<S, D> {
 }
 
 impl<S: Staged, const D: usize> Located<S, D> {
+    /// Moves on by `length`, in which no muscle has a kink, from event to event.
+    fn smooth(&mut self, model: &mut Model<f64, D>, state: &mut State<f64, D>, time: f64, length: f64) {
+        let jumps = model.muscles.iter().any(|muscle| muscle.wave == Wave::Square);
+        let inward = if jumps { 0.25 * instant(time) } else { 0.0 };
+        self.window = [time + inward, time + length - inward];
+        let (mut done, mut last) = (0.0, None);
+        for _ in 0..EVENTS_A_MASS * self.modes.len() {
+            let left = length - done;
+            // The pieces up to an event at the very end may add up to more than the whole, by a rounding error.
+            if left <= 0.0 {
+                return;
+            }
+            self.start.clone_from(state);
+            self.piece(model, state, time + done, left, last);
+            let Some((at, event)) = self.first_event(model, state, left) else { return };
+            state.clone_from(&self.start);
+            if at > 0.0 {
+                self.piece(model, state, time + done, at, last);
+                done += at;
+            }
+            if let Event::Rests(row) = event {
+                hold(model, model.spine[row], state);
+            }
+            last = Some(event);
+        }
+        if done < length {
+            self.piece(model, state, time + done, length - done, last);
+        }
+    }
+
     /// Moves on by `length`, with masses held or not as they are at the start. Of the mass with which the last piece ended it is known, where the push on
     /// it is still as good as nothing.
     fn piece(
@@ -149,7 +173,7 @@ impl<S: Staged, const D: usize> Located<S, D> {
                     subtract(&mut self.stage.velocity[row.particle as usize], frame.spine, speed);
                 }
             }
-            let now = time + stage.at * length;
+            let now = (time + stage.at * length).max(self.window[0]).min(self.window[1]);
             model.acceleration(now, &self.stage.position, &self.stage.velocity, &mut self.acceleration);
             model.admit_acceleration(&self.stage.position, &self.stage.velocity, &mut self.acceleration);
             for (index_of_row, mode) in self.modes.iter_mut().enumerate() {

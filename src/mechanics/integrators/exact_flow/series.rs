@@ -4,7 +4,7 @@ use core::f64::consts::TAU;
 
 use crate::{
     body::{LEAST_REST_FRACTION, Wave},
-    mechanics::{Model, State, model::MuscleRow, sin_cycles},
+    mechanics::{Model, State, kinks::half_cycles, model::MuscleRow, sin_cycles},
 };
 
 use super::Slide;
@@ -42,11 +42,6 @@ pub(super) fn fastest_rate<const D: usize>(model: &Model<f64, D>) -> f64 {
     let bodies = rows.iter().map(|(stiffness, damping)| stiffness.sqrt() + damping + drag);
     let muscles = model.muscles.iter().map(|muscle| TAU * muscle.frequency);
     bodies.chain(muscles).fold(1e-3, f64::max)
-}
-
-/// Where a muscle's square wave is in its cycle: how many half cycles have passed.
-fn half_cycles(at: f64) -> f64 {
-    (2.0 * at).floor()
 }
 
 impl Series {
@@ -89,23 +84,6 @@ impl Series {
         for (series, v) in self.velocity.iter_mut().zip(&state.velocity) {
             series[0] = v[0];
         }
-    }
-
-    /// Up to when no ramp ends and no square wave switches, at most `longest`.
-    pub(super) fn until_kink<const D: usize>(&self, model: &Model<f64, D>, time: f64, longest: f64) -> f64 {
-        let mut least = longest;
-        for muscle in &model.muscles {
-            let cycles = muscle.epoch_cycles + (time - muscle.epoch_time) * muscle.frequency;
-            let at = cycles - muscle.phase;
-            let next = match muscle.wave {
-                Wave::Sine => f64::INFINITY,
-                Wave::Square => 0.5 * (half_cycles(at) + 1.0) - at,
-            };
-            let ramp = if cycles < muscle.ramp { muscle.ramp - cycles } else { f64::INFINITY };
-            // A kink that rounding puts just before it is is passed, and not approached for ever.
-            least = least.min((next.min(ramp) / muscle.frequency).max(1e-12 * (1.0 + time.abs())));
-        }
-        least
     }
 
     /// 1 + ρ·amplitude·wave − the least fraction of a rest length, at the beginning of the segment.
