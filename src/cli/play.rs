@@ -11,7 +11,7 @@ use crate::scenes;
 use crate::{
     panel::PanelPlugin,
     physics::PhysicsPlugin,
-    scenes::{ScenesPlugin, WatchPlugin},
+    scenes::{RescuePlugin, ScenesPlugin, WatchPlugin},
     view::{self, ViewPlugin},
 };
 
@@ -37,8 +37,8 @@ pub(super) fn play(arguments: &PlayArguments) -> Result<Outcome, CliError> {
 /// What a window needs and is not there.
 #[cfg(feature = "window")]
 fn missing() -> Option<String> {
-    if !view::display_available() {
-        return Some("there is no display (no X server answers at DISPLAY)".into());
+    if let Err(missing) = view::display() {
+        return Some(missing.to_string());
     }
     view::adapter().err().map(|missing| missing.to_string())
 }
@@ -63,6 +63,7 @@ fn open_window(scene: scenes::LoadedScene) -> Result<Outcome, CliError> {
         PhysicsPlugin::default(),
         ScenesPlugin::new(scene),
         WatchPlugin,
+        RescuePlugin,
         ViewPlugin::default(),
         PanelPlugin,
     ));

@@ -22,9 +22,9 @@ use crate::{
     body::{Particles, Rules},
     creatures::library,
     mechanics::integrators::Method,
-    physics::{BodyFrozen, BodyInverted, Clock, Frozen, Plan, Restart, Shown, Work},
-    scenes::{self, CurrentScene, Runner, SceneChange, SceneProblem, parameters},
-    view::SceneCamera,
+    physics::{BodyFrozen, BodyInverted, Clock, Frozen, Plan, Restart, Shown, Steer, Work},
+    scenes::{self, BodyRescued, CurrentScene, Runner, SceneBodies, SceneChange, SceneProblem, parameters},
+    view::{SceneCamera, Selected},
 };
 
 /// Seconds between two readings of all parameters: others than the panel change them rarely.
@@ -39,13 +39,18 @@ pub struct Known {
     defaults: HashMap<String, f64>,
     read_at: Option<f64>,
     selected: usize,
+    /// The animal that is led.
+    led: Option<Entity>,
     frozen: HashMap<Entity, String>,
+    /// What was said of a bad file since a scene was opened.
+    bad_file: Option<String>,
 }
 
 /// Takes up what the watch and the scenes report.
 pub(super) fn listen(
     mut frozen: MessageReader<BodyFrozen>,
     mut inverted: MessageReader<BodyInverted>,
+    mut rescued: MessageReader<BodyRescued>,
     mut problems: MessageReader<SceneProblem>,
     mut known: ResMut<Known>,
     mut settings: ResMut<Settings>,
@@ -57,8 +62,12 @@ pub(super) fn listen(
     for BodyInverted { text, .. } in inverted.read() {
         settings.tell(true, text.clone());
     }
+    for BodyRescued { text, .. } in rescued.read() {
+        settings.tell(true, text.clone());
+    }
     for problem in problems.read() {
         settings.tell(true, problem.text.clone());
+        known.bad_file = Some(problem.text.clone());
     }
 }
 
@@ -73,8 +82,10 @@ pub fn read(world: &mut World) {
                 known.scene = scene;
                 open(world, &mut settings, &mut known);
             }
-            if opened || is_stale(world, &settings, &known) {
+            let led = world.get_resource::<Selected>().and_then(|selected| selected.0);
+            if opened || led != known.led || is_stale(world, &settings, &known) {
                 read_bodies(world, &mut settings, &known);
+                share_selection(world, &mut settings, &mut known);
                 read_parameters(world, &mut settings, &mut known, opened);
             }
             settings.gauge = gauge(world);
@@ -99,6 +110,10 @@ fn read_clock(world: &World, settings: &mut Settings) {
 fn open(world: &mut World, settings: &mut Settings, known: &mut Known) {
     known.defaults = parameters::list(world).into_iter().map(|parameter| (parameter.path, parameter.value)).collect();
     known.frozen.clear();
+    // The file is mended, or another one is open.
+    if let Some(text) = known.bad_file.take() {
+        settings.messages.retain(|note| note.text != text);
+    }
     settings.parameters.clear();
     chart::forget(world, settings);
     // Blocks side by side are there to be compared, in one attitude.
@@ -134,12 +149,29 @@ fn read_bodies(world: &mut World, settings: &mut Settings, known: &Known) {
             frozen: frozen.map(|frozen| known.frozen.get(&entity).unwrap_or(&frozen.reason).clone()),
         })
         .collect();
-    bodies.sort_by_key(|body| body.entity);
+    // As the scene lists them; entities have no order of their own.
+    let order = world.get_resource::<SceneBodies>().map(|bodies| bodies.0.clone()).unwrap_or_default();
+    bodies
+        .sort_by_key(|body| (order.iter().position(|other| *other == body.entity).unwrap_or(order.len()), body.entity));
     if moved {
         settings.selected = bodies.iter().position(|body| Some(body.entity) == before).unwrap_or(0);
     }
     settings.selected = settings.selected.min(bodies.len().saturating_sub(1));
     settings.bodies = bodies;
+}
+
+/// The animal that is led and the body that the panel shows are one: who chooses last has it.
+fn share_selection(world: &mut World, settings: &mut Settings, known: &mut Known) {
+    let Some(led) = world.get_resource::<Selected>().map(|selected| selected.0) else { return };
+    let shown = settings.body().map(|body| body.entity);
+    if led != known.led {
+        let place = settings.bodies.iter().position(|body| Some(body.entity) == led);
+        settings.selected = place.unwrap_or(settings.selected);
+        known.led = led;
+    } else if shown != led && shown.is_some_and(|body| world.get::<Steer>(body).is_some()) {
+        world.insert_resource(Selected(shown));
+        known.led = shown;
+    }
 }
 
 /// Reads the parameters of the clock and of the selected body; what is being typed and what was refused stays.
@@ -165,6 +197,7 @@ fn read_parameters(world: &mut World, settings: &mut Settings, known: &mut Known
         settings.parameters.push(setting);
     }
     settings.method = parameters::method(world);
+    settings.stick = parameters::stick(world);
     settings.without_method = world.query_filtered::<(), (With<Rules>, Without<Method>)>().iter(world).next().is_some()
         && world.query_filtered::<(), (With<Particles>, With<Method>)>().iter(world).next().is_none();
     known.selected = settings.selected;

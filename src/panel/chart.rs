@@ -80,11 +80,20 @@ fn draw(ui: &mut egui::Ui, chart: &WorkPrecision, settings: &Settings) {
                 let color = SERIES[index % SERIES.len()];
                 // Six colours, and a form for each six methods.
                 let form = [MarkerShape::Circle, MarkerShape::Diamond, MarkerShape::Square][index / SERIES.len() % 3];
-                let line = curve(chart, method);
+                let line = curve(chart, method, StickRule::InStages);
                 plot.line(Line::new(method.name(), line.clone()).color(color).width(1.2));
                 plot.points(Points::new(method.name(), line).color(color).radius(2.5).shape(form));
             }
-            if let Some([x, y]) = marker(chart, settings.method, settings.dt()) {
+            // In the scene's own way that friction acts, where that is another.
+            let stick = rule(chart, settings.method, settings.stick);
+            if stick != StickRule::InStages {
+                let index = methods(chart).iter().position(|method| *method == settings.method).unwrap_or_default();
+                let line = curve(chart, settings.method, stick);
+                let name = format!("{}, {}", settings.method.name(), words(stick));
+                let color = SERIES[index % SERIES.len()];
+                plot.line(Line::new(name, line).color(color).width(1.2).style(LineStyle::dotted_dense()));
+            }
+            if let Some([x, y]) = marker(chart, settings.method, settings.stick, settings.dt()) {
                 plot.points(
                     Points::new("now", vec![[x, y]]).color(Color32::WHITE).radius(8.0).shape(MarkerShape::Asterisk),
                 );
@@ -111,20 +120,35 @@ fn methods(chart: &WorkPrecision) -> Vec<Method> {
     Method::ALL.into_iter().filter(measured).collect()
 }
 
-/// The runs of a method with friction in its stages as (log₁₀ evaluations, log₁₀ error), from the largest step down.
-fn curve(chart: &WorkPrecision, method: Method) -> Vec<[f64; 2]> {
-    runs(chart, method).map(|(point, error)| [libm::log10(point.evaluations as f64), libm::log10(error)]).collect()
+/// The runs of a method with a stick rule as (log₁₀ evaluations, log₁₀ error), from the largest step down.
+fn curve(chart: &WorkPrecision, method: Method, stick: StickRule) -> Vec<[f64; 2]> {
+    let place = |(point, error): (&Point, f64)| [libm::log10(point.evaluations as f64), libm::log10(error)];
+    runs(chart, method, stick).map(place).collect()
 }
 
-fn runs(chart: &WorkPrecision, method: Method) -> impl Iterator<Item = (&Point, f64)> {
-    let of_method = move |point: &&Point| point.setting.method == method && point.setting.stick == StickRule::InStages;
+fn runs(chart: &WorkPrecision, method: Method, stick: StickRule) -> impl Iterator<Item = (&Point, f64)> {
+    let of_method = move |point: &&Point| (point.setting.method, point.setting.stick) == (method, stick);
     // What is exact to the last bit has no logarithm.
     chart.points.iter().filter(of_method).filter_map(|point| Some((point, point.errors?.largest.max(1e-16))))
 }
 
-/// Where the present setting stands: between the measured steps of its method, along straight lines of the chart; beyond them, at their end.
-pub fn marker(chart: &WorkPrecision, method: Method, dt: f64) -> Option<[f64; 2]> {
-    let mut known: Vec<_> = runs(chart, method)
+/// The stick rule under which a method was measured that stands for `stick`: where it makes no difference, only that in stages was.
+fn rule(chart: &WorkPrecision, method: Method, stick: StickRule) -> StickRule {
+    if runs(chart, method, stick).next().is_some() { stick } else { StickRule::InStages }
+}
+
+fn words(stick: StickRule) -> &'static str {
+    match stick {
+        StickRule::InStages => "in stages",
+        StickRule::EndOfStep => "at end",
+        StickRule::Located => "located",
+    }
+}
+
+/// Where the present setting stands: between the measured steps of its method and stick rule, along straight lines of the chart; beyond them, at their
+/// end.
+pub fn marker(chart: &WorkPrecision, method: Method, stick: StickRule, dt: f64) -> Option<[f64; 2]> {
+    let mut known: Vec<_> = runs(chart, method, rule(chart, method, stick))
         .map(|(point, error)| {
             (libm::log10(point.setting.dt), [libm::log10(point.evaluations as f64), libm::log10(error)])
         })

@@ -42,8 +42,8 @@ pub use traces::Traces;
 
 use crate::{
     physics::{BodyFrozen, BodyInverted, Restart},
-    scenes::{SceneChange, SceneProblem},
-    view::{CoveredLeft, PointerOnPanel},
+    scenes::{BodyRescued, SceneChange, SceneProblem},
+    view::{CoveredLeft, LeaveToPanel, PointerOnPanel},
 };
 
 /// How wide the panel is, in points.
@@ -65,6 +65,7 @@ impl Plugin for PanelPlugin {
         app.world_mut().resource_mut::<EguiGlobalSettings>().auto_create_primary_context = false;
         app.add_message::<BodyFrozen>()
             .add_message::<BodyInverted>()
+            .add_message::<BodyRescued>()
             .add_message::<Restart>()
             .add_message::<SceneChange>()
             .add_message::<SceneProblem>()
@@ -84,7 +85,8 @@ impl Plugin for PanelPlugin {
                     .chain()
                     .before(EguiPostUpdateSet::EndPass),
             )
-            .add_systems(PostUpdate, (bridge::apply, say_pointer, say_width).after(EguiPostUpdateSet::ProcessOutput))
+            .add_systems(PostUpdate, (bridge::apply, say_width).after(EguiPostUpdateSet::ProcessOutput))
+            .add_systems(PostUpdate, say_pointer.after(EguiPostUpdateSet::ProcessOutput).before(LeaveToPanel))
             .add_systems(EguiPrimaryContextPass, draw);
     }
 }

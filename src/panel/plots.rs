@@ -8,7 +8,7 @@ use super::{
     gait,
     ring::Ring,
     settings::Settings,
-    traces::{Block, Traces},
+    traces::{BesideBlock, Block, Traces},
 };
 
 /// How high a plot is.
@@ -75,20 +75,59 @@ fn block(ui: &mut egui::Ui, traces: &Traces, shown: (f64, f64)) {
         ("inverted", "cells inside out", |block| block.shape.inverted as f64, [0.0, 1.0]),
         ("energy", "energy: kinetic, elastic and of height", |block| block.energy, [0.0, 1e-6]),
     ];
+    if !traces.side_by_side.is_empty() {
+        side_by_side(ui, traces);
+    }
     for ((id, title, value, least), color) in plots.into_iter().zip(SERIES) {
         let now = traces.blocks.last().map(value).unwrap_or_default();
         legend(ui, &format!("{title}: {now:.3}"), []);
         show_over(ui, id, shown, &least, |plot| {
-            let line = traces.time.iter().zip(traces.blocks.iter()).map(|(&time, block)| [time, value(block)]);
-            plot.line(Line::new(title, line.collect::<PlotPoints<'_>>()).color(color).width(1.8));
+            let line = |name: &str, blocks: &Ring<Block>, color: Color32| {
+                let line = traces.time.iter().zip(blocks.iter()).map(|(&time, block)| [time, value(block)]);
+                Line::new(name, line.collect::<PlotPoints<'_>>()).color(color).width(1.8)
+            };
+            if traces.side_by_side.is_empty() {
+                plot.line(line(title, &traces.blocks, color));
+            }
+            for trace in &traces.side_by_side {
+                plot.line(line(&trace.now.name, &trace.values, rgb(trace.now.color)));
+            }
         });
     }
+}
+
+/// What holds its shape, at what cost, and at which largest step: a row for each of several blocks.
+fn side_by_side(ui: &mut egui::Ui, traces: &Traces) {
+    egui::Grid::new("blocks").num_columns(5).spacing(vec2(9.0, 2.0)).show(ui, |ui| {
+        for heading in ["block", "springs", "largest dt", "shape", "volume"] {
+            ui.label(RichText::new(heading).small().weak());
+        }
+        ui.end_row();
+        for BesideBlock { name, color, springs, limit, block } in traces.side_by_side.iter().map(|trace| &trace.now) {
+            ui.label(RichText::new(name).size(12.0).strong().color(rgb(*color)));
+            ui.label(RichText::new(springs.to_string()).size(12.0)).on_hover_text("as many forces an evaluation");
+            let limit = if limit.is_finite() { format!("{limit:.3}") } else { "none".into() };
+            ui.label(RichText::new(limit).size(12.0)).on_hover_text("the largest stable step that is sure");
+            ui.label(RichText::new(format!("{:.3}", block.shape.shape_error)).size(12.0))
+                .on_hover_text("shape error, in spacings");
+            let volume = block.shape.volume.map_or("–".into(), |volume| format!("{volume:.3}"));
+            ui.label(RichText::new(volume).size(12.0)).on_hover_text("1: undeformed");
+            ui.end_row();
+        }
+    });
+}
+
+/// A colour from 0xRRGGBB.
+fn rgb(color: u32) -> Color32 {
+    let [_, red, green, blue] = color.to_be_bytes();
+    Color32::from_rgb(red, green, blue)
 }
 
 fn distance(ui: &mut egui::Ui, traces: &Traces, shown: (f64, f64)) {
     let now = traces.distance.last().copied().unwrap_or_default();
     legend(ui, &format!("distance travelled: {now:.2}"), []);
-    show(ui, "distance", shown, |plot| {
+    // What rests is to look like it.
+    show_over(ui, "distance", shown, &[0.0, 0.01], |plot| {
         plot.line(Line::new("distance", points(&traces.time, &traces.distance)).color(SERIES[0]).width(1.8));
     });
 }

@@ -2,16 +2,19 @@
 
 use bevy::{
     ecs::{prelude::*, resource::IsResource},
+    prelude::Name,
     time::{Real, Time},
 };
 
 use super::{
     settings::Settings,
-    traces::{Frame, Observation, Traces, observe},
+    traces::{BesideBlock, Frame, Observation, Traces, block, observe},
 };
 use crate::{
-    body::Particles,
-    physics::{Clock, Cost, StartState, body_parts},
+    body::{Lattice, Particles},
+    physics::{Clock, Cost, Plan, StartState, body_parts},
+    scenes::SceneBodies,
+    view::skin_color,
 };
 
 /// How much of a new frame's cost goes into the numbers that are shown.
@@ -29,6 +32,7 @@ pub(super) fn tick(
     clock: Option<Res<Clock>>,
     cost: Option<Res<Cost>>,
     settings: Res<Settings>,
+    scene: Option<Res<SceneBodies>>,
     bodies: Query<EntityRef, (With<Particles>, Without<IsResource>)>,
     mut traces: ResMut<Traces>,
     mut meter: ResMut<Meter>,
@@ -48,8 +52,36 @@ pub(super) fn tick(
         traces.record(body, &Observation { time: clock.time(), distance, ..Observation::default() });
         return;
     };
-    traces.record(body, &observe(&parts, start, clock.time()));
+    let mut seen = observe(&parts, start, clock.time());
+    if seen.block.is_some() {
+        seen.side_by_side = side_by_side(scene.as_deref(), &bodies, clock.time());
+    }
+    traces.record(body, &seen);
     traces.gait.look(body, &parts, &clock);
+}
+
+/// All blocks of a scene, in its order; none where there is only one.
+fn side_by_side(
+    scene: Option<&SceneBodies>,
+    bodies: &Query<EntityRef, (With<Particles>, Without<IsResource>)>,
+    time: f64,
+) -> Vec<BesideBlock> {
+    let in_order = scene.into_iter().flat_map(|scene| &scene.0).filter_map(|body| bodies.get(*body).ok());
+    let blocks: Vec<_> = in_order.filter(|entity| entity.contains::<Lattice>()).collect();
+    if blocks.len() < 2 {
+        return Vec::new();
+    }
+    let beside = |entity: EntityRef<'_>| {
+        let (parts, lattice) = (body_parts(entity)?, entity.get::<Lattice>()?);
+        Some(BesideBlock {
+            name: entity.get::<Name>().map_or_else(|| "block".into(), ToString::to_string),
+            color: skin_color(*lattice),
+            springs: parts.springs.len(),
+            limit: entity.get::<Plan>().map_or(f64::INFINITY, Plan::stability_limit),
+            block: block(&parts, time)?,
+        })
+    };
+    blocks.into_iter().filter_map(beside).collect()
 }
 
 /// Samples the cost of a frame.
@@ -81,9 +113,13 @@ mod tests {
 
     #[test]
     fn a_tick_is_traced_of_every_kind_of_body() {
-        for (scene, block, animal) in
-            [("garden", 0, false), ("jelly", 1, false), ("meadow", 0, true), ("rough-road", 0, false)]
-        {
+        for (scene, block, animal) in [
+            ("garden", 0, false),
+            ("jelly", 1, false),
+            ("jelly-lab", 1, false),
+            ("meadow", 0, true),
+            ("rough-road", 0, false),
+        ] {
             let mut world = World::new();
             world.init_resource::<Settings>();
             world.init_resource::<bridge::Known>();
@@ -95,6 +131,12 @@ mod tests {
             let traces = world.resource::<Traces>();
             let seen = (traces.time.len(), traces.blocks.len(), traces.gait.is_of_animal());
             assert_eq!(seen, (1, block, animal), "{scene}");
+            let names: Vec<_> = traces.side_by_side.iter().map(|trace| trace.now.name.as_str()).collect();
+            let several = if scene == "jelly-lab" { &["edges", "faces", "cubes", "all"][..] } else { &[] };
+            assert_eq!(names, several, "{scene}");
+            for trace in &traces.side_by_side {
+                assert!(trace.now.limit > 0.0 && trace.values.len() == 1, "{scene}: {:?}", trace.now);
+            }
         }
     }
 }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use bevy::ecs::prelude::*;
 
 use super::{chart::ChartState, gauge::Gauge, race::RunnerInfo, row::Edit, setting::Setting};
-use crate::mechanics::integrators::Method;
+use crate::mechanics::integrators::{Method, StickRule};
 
 /// At most this many messages are kept; older ones go.
 const MOST_MESSAGES: usize = 5;
@@ -26,6 +26,8 @@ pub struct Settings {
     pub together: bool,
     /// The method of the scene.
     pub method: Method,
+    /// When friction acts within a step of the scene.
+    pub stick: StickRule,
     /// No body of the scene has a method: they follow the rules of the six-matrix particle system.
     pub without_method: bool,
     /// The work-precision chart of the scene.

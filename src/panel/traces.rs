@@ -32,6 +32,8 @@ pub struct Traces {
     pub distance: Ring<f64>,
     /// The shape of a block on a grid; empty where the body is none.
     pub blocks: Ring<Block>,
+    /// All blocks of a scene that has several, to be compared.
+    pub side_by_side: Vec<BlockTrace>,
     /// The gait of an animal.
     pub gait: GaitWatch,
     /// What the last frames cost.
@@ -68,6 +70,30 @@ pub struct Block {
     pub energy: f64,
 }
 
+/// One of several blocks, as it is now and what the plots compare.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BesideBlock {
+    /// Its name in the scene.
+    pub name: String,
+    /// The colour of its skin, as 0xRRGGBB.
+    pub color: u32,
+    /// How many springs it has.
+    pub springs: usize,
+    /// The largest stable step; infinite where nothing is unstable.
+    pub limit: f64,
+    /// Its shape and energy.
+    pub block: Block,
+}
+
+/// One of several blocks over the last ticks.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BlockTrace {
+    /// As it was last.
+    pub now: BesideBlock,
+    /// As it was at each tick.
+    pub values: Ring<Block>,
+}
+
 /// What one frame cost.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Frame {
@@ -92,6 +118,8 @@ pub struct Observation {
     pub distance: f64,
     /// The shape of a block on a grid, where the body is one.
     pub block: Option<Block>,
+    /// All blocks of the scene, where it has several and the body is one.
+    pub side_by_side: Vec<BesideBlock>,
 }
 
 impl Default for Traces {
@@ -110,6 +138,7 @@ impl Traces {
             masses: Vec::new(),
             distance: Ring::new(capacity),
             blocks: Ring::new(capacity),
+            side_by_side: Vec::new(),
             gait: GaitWatch::default(),
             frames: Ring::new(capacity),
             capacity,
@@ -121,6 +150,7 @@ impl Traces {
         self.time.clear();
         self.distance.clear();
         self.blocks.clear();
+        self.side_by_side.clear();
         self.gait = GaitWatch::default();
         self.springs.clear();
         self.masses.clear();
@@ -130,6 +160,11 @@ impl Traces {
     pub fn record(&mut self, body: Entity, seen: &Observation) {
         let same = self.body == Some(body)
             && self.blocks.is_empty() == (seen.block.is_none() || self.time.is_empty())
+            && self
+                .side_by_side
+                .iter()
+                .map(|trace| &trace.now.name)
+                .eq(seen.side_by_side.iter().map(|block| &block.name))
             && self.springs.iter().map(|trace| &trace.name).eq(seen.springs.iter().map(|(name, ..)| name))
             && self.masses.iter().map(|trace| &trace.name).eq(seen.masses.iter().map(|(name, _)| name));
         let last = self.time.last().copied();
@@ -141,6 +176,10 @@ impl Traces {
         self.time.push(seen.time);
         self.distance.push(seen.distance);
         seen.block.into_iter().for_each(|block| self.blocks.push(block));
+        for (trace, seen) in self.side_by_side.iter_mut().zip(&seen.side_by_side) {
+            trace.now.clone_from(seen);
+            trace.values.push(seen.block);
+        }
         for (trace, (_, length, rest)) in self.springs.iter_mut().zip(&seen.springs) {
             trace.length.push(*length);
             trace.rest.push(*rest);
@@ -153,6 +192,9 @@ impl Traces {
     fn begin(&mut self, body: Entity, seen: &Observation) {
         self.clear();
         self.body = Some(body);
+        self.side_by_side = (seen.side_by_side.iter())
+            .map(|block| BlockTrace { now: block.clone(), values: Ring::new(self.capacity) })
+            .collect();
         let ring = || Ring::new(self.capacity);
         self.springs = seen
             .springs
@@ -210,11 +252,15 @@ pub fn observe(body: &BodyParts<'_>, start: DVec3, time: f64) -> Observation {
             Some((letter(index), velocity))
         })
         .collect();
-    let block = body.lattice.and_then(|lattice| {
-        let shape = BlockShape::measure(particles, lattice)?;
-        Some(Block { shape, energy: kinetic_energy(particles) + elastic_energy(body, time) + gravity_energy(body) })
-    });
-    Observation { time, springs, masses, distance: particles.center().distance(start), block }
+    let distance = particles.center().distance(start);
+    Observation { time, springs, masses, distance, block: block(body, time), side_by_side: Vec::new() }
+}
+
+/// Shape and energy of a block on a grid at `time`; nothing where the body is none.
+pub fn block(body: &BodyParts<'_>, time: f64) -> Option<Block> {
+    let shape = BlockShape::measure(body.particles, body.lattice?)?;
+    let energy = kinetic_energy(body.particles) + elastic_energy(body, time) + gravity_energy(body);
+    Some(Block { shape, energy })
 }
 
 /// The spine from tail to head; the order of the particles where there is no friction to say it.

@@ -14,6 +14,14 @@ pub struct Restart;
 #[derive(Clone, Component, Debug)]
 pub struct StartState(pub Particles);
 
+impl StartState {
+    /// Puts a body back to where it was spawned, and shows it there at once.
+    pub fn put_back(&self, particles: &mut Particles, previous: &mut Previous) {
+        particles.set_state(&self.0);
+        previous.position.clone_from(self.0.position_columns());
+    }
+}
+
 /// Remembers how a body was spawned.
 pub(super) fn remember_start(add: On<Add, Particles>, bodies: Query<&Particles>, mut commands: Commands) {
     if let Ok(particles) = bodies.get(add.entity) {
@@ -57,8 +65,7 @@ pub(super) fn restart(
         &mut bodies
     {
         *work = Work::default();
-        particles.set_state(&start.0);
-        previous.position.clone_from(start.0.position_columns());
+        start.put_back(&mut particles, &mut previous);
         if let Some(mut muscles) = muscles {
             muscles.rewind();
         }

@@ -8,7 +8,7 @@ use std::{
 
 use bevy::math::DVec3;
 
-use super::{Camera, Placement, Props, SceneClock, SceneFile, StepSize, fits, parameters, roads::Roads, spawn};
+use super::{Placement, Props, SceneClock, SceneFile, StepSize, alone, fits, parameters, roads::Roads, spawn};
 use crate::{
     body::{BodyError, Ground, LEAST_REST_FRACTION, Muscles, TravelingWaves},
     creatures::{
@@ -134,6 +134,10 @@ pub fn load_creature(name: &str) -> Result<LoadedScene, FileError> {
     let source = library::find(CREATURE, name, None)?;
     let creature = Arc::new(library::read_creature(&source)?);
     let stem = source.stem();
+    // What is wrong with its body is told where the scene is checked.
+    let body = creature.body(Pose::default()).ok().filter(|body| body.six.is_none());
+    let camera = body.as_ref().map(|body| alone::camera(body, creature.ground.is_some()));
+    let time_scale = body.as_ref().map_or(1.0, alone::time_scale);
     let file = SceneFile {
         version: 1,
         title: stem.clone(),
@@ -150,11 +154,11 @@ pub fn load_creature(name: &str) -> Result<LoadedScene, FileError> {
             method: None,
         }],
         props: Props::None,
-        camera: Camera::default(),
+        camera: camera.unwrap_or_default(),
         clock: match creature.body.composed() {
             // t belongs to this model of motion as its other numbers do.
             Some(_) => SceneClock { step: StepSize::Dt(SIX_MATRIX_DT), time_scale: 3.0, opens_at: None },
-            None => SceneClock::default(),
+            None => SceneClock { time_scale, ..SceneClock::default() },
         },
         method: Method::default(),
         stick: StickRule::default(),
@@ -188,6 +192,15 @@ fn check_truth(scene: &LoadedScene) -> Result<(), FileError> {
         let problem = format!("no creature is called \"{truth}\"; give one of {}", names.join(", "));
         return Err(scene_conflict(scene, "truth".into(), problem));
     };
+    for (i, (placement, (_, creature))) in scene.file.creatures.iter().zip(&scene.creatures).enumerate() {
+        if creature.body.composed().is_some() {
+            let problem = format!(
+                "\"{}\" follows the six-matrix particle system, which knows one step and no method: it cannot race",
+                placement.name
+            );
+            return Err(scene_conflict(scene, format!("creatures[{i}]"), problem));
+        }
+    }
     let (model, count) = (&scene.file.creatures[index], scene.creatures[index].1.particle_count());
     for (i, (placement, (_, creature))) in scene.file.creatures.iter().zip(&scene.creatures).enumerate() {
         if placement.heading != model.heading || creature.particle_count() != count {

@@ -31,40 +31,56 @@ pub fn adapter() -> Result<AdapterSummary, NoAdapter> {
     Ok(AdapterSummary { software: info.device_type == wgpu::DeviceType::Cpu, name: info.name })
 }
 
-/// Whether there is a display that a window could open on: a Wayland or X11 socket that answers where one is named. True on systems
-/// that always have one.
-pub fn display_available() -> bool {
+/// There is no display that a window could open on.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum NoDisplay {
+    /// Neither Wayland nor X11 is named.
+    #[error("there is no display (DISPLAY names no X server)")]
+    Unnamed,
+    /// The X server that is named does not let anybody in.
+    #[error("there is no display (the X server at DISPLAY={display} does not let us in: {reason})")]
+    Refused {
+        /// What is named.
+        display: String,
+        /// Why nobody comes in.
+        reason: String,
+    },
+    /// A library is missing that a window needs.
+    #[error("a window cannot be opened: the library {0} is missing or cannot be loaded")]
+    Library(&'static str),
+}
+
+/// Whether there is a display that a window can open on: a Wayland compositor that answers, or an X server that lets us in, with the libraries of X11. Always on systems that always have one.
+///
+/// # Errors
+/// If there is none.
+pub fn display() -> Result<(), NoDisplay> {
     #[cfg(all(unix, not(target_os = "macos")))]
-    {
-        x11_answers() || (cfg!(feature = "wayland") && wayland_answers())
+    if !(cfg!(feature = "wayland") && wayland_answers()) {
+        return x11();
     }
-    #[cfg(not(all(unix, not(target_os = "macos"))))]
-    {
-        true
-    }
+    Ok(())
 }
 
 #[cfg(all(unix, not(target_os = "macos")))]
-fn x11_answers() -> bool {
-    use std::os::unix::net::UnixStream;
-
-    let Some(display) = std::env::var("DISPLAY").ok().filter(|display| !display.is_empty()) else { return false };
-    let Some((host, number)) = display.rsplit_once(':') else { return false };
-    let number = number.split('.').next().unwrap_or_default();
-    // A display on another machine is taken at its word.
-    if !host.is_empty() && host != "unix" {
-        return true;
+fn x11() -> Result<(), NoDisplay> {
+    let display = std::env::var("DISPLAY").unwrap_or_default();
+    if display.is_empty() {
+        return Err(NoDisplay::Unnamed);
     }
-    let socket = format!("/tmp/.X11-unix/X{number}");
-    #[cfg(target_os = "linux")]
-    {
-        use std::os::linux::net::SocketAddrExt;
-        let name = std::os::unix::net::SocketAddr::from_abstract_name(&socket);
-        if name.is_ok_and(|name| UnixStream::connect_addr(&name).is_ok()) {
-            return true;
-        }
+    // A handshake, with the cookie that XAUTHORITY has for it; a socket alone may answer and then refuse.
+    if let Err(reason) = x11rb::rust_connection::RustConnection::connect(Some(&display)) {
+        return Err(NoDisplay::Refused { display, reason: reason.to_string() });
     }
-    UnixStream::connect(&socket).is_ok()
+    let libraries = [
+        ("libX11", x11_dl::xlib::Xlib::open().is_ok()),
+        ("libXcursor", x11_dl::xcursor::Xcursor::open().is_ok()),
+        ("libX11-xcb", x11_dl::xlib_xcb::Xlib_xcb::open().is_ok()),
+        ("libXi", x11_dl::xinput2::XInput2::open().is_ok()),
+        ("libxkbcommon", xkbcommon_dl::xkbcommon_option().is_some()),
+        ("libxkbcommon-x11", xkbcommon_dl::x11::xkbcommon_x11_option().is_some()),
+    ];
+    libraries.into_iter().find(|(_, opens)| !opens).map_or(Ok(()), |(name, _)| Err(NoDisplay::Library(name)))
 }
 
 #[cfg(all(unix, not(target_os = "macos")))]

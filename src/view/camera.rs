@@ -3,15 +3,22 @@
 use bevy::{camera::SubCameraView, light::cluster::ClusterConfig, prelude::*, render::view::NoIndirectDrawing};
 use bevy_panorbit_camera::{PanOrbitCamera, PanOrbitCameraPlugin, PanOrbitCameraSystemSet, TrackpadBehavior};
 
-use super::{drag::Held, half::HalfResolution, help::typing, offscreen::OffscreenTarget, quality::Quality};
+use super::{
+    drag::Held, half::HalfResolution, help::typing, offscreen::OffscreenTarget, quality::Quality, steering::Selected,
+    travel::Herd,
+};
 use crate::{
     creatures::Look,
     physics::Shown,
     scenes::{Camera as Place, CurrentScene, FIELD_OF_VIEW},
 };
 
-/// Whether the pointer is used by a panel: while true, it does not move the camera. Written by whoever draws panels, before
-/// [`PostUpdate`].
+/// Where the camera is kept still while the pointer is used by a panel, in [`PostUpdate`]. Whoever draws panels writes [`PointerOnPanel`] before it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, SystemSet)]
+pub struct LeaveToPanel;
+
+/// Whether the pointer is used by a panel: while true, it does not move the camera. Written by whoever draws panels, before [`LeaveToPanel`]: a wheel that
+/// turns in the frame in which the pointer comes onto a panel is the panel's.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect, Resource)]
 #[reflect(Resource)]
 pub struct PointerOnPanel(pub bool);
@@ -27,7 +34,7 @@ pub struct CoveredLeft(pub f32);
 #[reflect(Component)]
 pub struct SceneCamera;
 
-/// Whether the camera follows the first body of the scene; key `C`.
+/// Whether the camera follows the selected animal, or the first body of a scene without any; key `C`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect, Resource)]
 #[reflect(Resource)]
 pub struct FollowWorm(pub bool);
@@ -47,7 +54,10 @@ pub(super) fn plugin(app: &mut App) {
             Update,
             (take_place.run_if(resource_exists_and_changed::<CurrentScene>), toggle.run_if(not(typing))).chain(),
         )
-        .add_systems(PostUpdate, (leave_to_panel, follow, make_room).chain().before(PanOrbitCameraSystemSet));
+        .add_systems(
+            PostUpdate,
+            (leave_to_panel.in_set(LeaveToPanel), follow, make_room).chain().before(PanOrbitCameraSystemSet),
+        );
 }
 
 fn spawn(quality: Res<Quality>, target: Option<Res<OffscreenTarget>>, mut commands: Commands) {
@@ -110,6 +120,7 @@ fn take_place(scene: Res<CurrentScene>, mut cameras: Query<(&mut PanOrbitCamera,
 fn toggle(
     keys: Res<ButtonInput<KeyCode>>,
     scene: Option<Res<CurrentScene>>,
+    herd: Res<Herd>,
     mut following: ResMut<FollowWorm>,
     mut cameras: Query<&mut PanOrbitCamera, With<SceneCamera>>,
 ) {
@@ -122,7 +133,9 @@ fn toggle(
             orbit.target_radius = orbit.target_radius.min(NEAR);
         } else if let Some(scene) = &scene {
             let (focus, _, _, radius) = place(scene);
-            (orbit.target_focus, orbit.target_radius) = (focus, radius);
+            // Where the scene would have it, had it gone along all the while.
+            let (moved, wider) = herd.since_start(radius);
+            (orbit.target_focus, orbit.target_radius) = (focus + moved, wider);
         }
     }
 }
@@ -154,14 +167,16 @@ fn make_room(covered: Res<CoveredLeft>, mut cameras: Query<&mut Camera, With<Sce
     }
 }
 
-/// Draws the camera's focus towards the middle of the first body.
+/// Draws the camera's focus towards the middle of the selected animal, or of the first body where no animal is led.
 fn follow(
     time: Res<Time<Real>>,
     following: Res<FollowWorm>,
+    selected: Option<Res<Selected>>,
     bodies: Query<&Shown, With<Look>>,
     mut cameras: Query<&mut PanOrbitCamera, With<SceneCamera>>,
 ) {
-    let Some(shown) = bodies.iter().next().filter(|_| following.0) else { return };
+    let led = selected.and_then(|selected| bodies.get(selected.0?).ok());
+    let Some(shown) = led.or_else(|| bodies.iter().next()).filter(|_| following.0) else { return };
     let count = shown.positions().len().max(1) as f32;
     let middle = shown.positions().iter().sum::<Vec3>() / count + Vec3::Y * 0.4;
     let part = 1.0 - (-QUICKNESS * time.delta_secs()).exp();

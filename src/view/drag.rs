@@ -4,12 +4,13 @@ use bevy::{ecs::system::SystemParam, prelude::*, window::PrimaryWindow};
 
 use super::camera::{PointerOnPanel, SceneCamera};
 use crate::{
-    body::{ParticleId, Particles, Pull, Rules},
+    body::{ParticleId, Particles, Pull, Rules, Springs},
     physics::{Frozen, Shown},
 };
 
-/// How far from a particle the pointer may be to take it, as a part of how far away it is, and in lengths.
-const REACH: (f32, f32) = (0.012, 0.3);
+/// How far from a particle the pointer may be to take it: as a part of how far away it is, and in rest lengths of its body's springs. So the whole of a
+/// skin can be taken, the middle of a face between four masses, too.
+const REACH: (f32, f32) = (0.012, 0.75);
 
 /// The body that is dragged, where its particle was taken, and how far its true place is from where it is shown.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Resource)]
@@ -47,7 +48,7 @@ fn take(
     buttons: Res<ButtonInput<MouseButton>>,
     on_panel: Res<PointerOnPanel>,
     pointer: Pointer,
-    bodies: Query<(Entity, &Shown, &Particles), Takeable>,
+    bodies: Query<(Entity, &Shown, &Particles, Option<&Springs>), Takeable>,
     mut held: ResMut<Held>,
     mut commands: Commands,
 ) {
@@ -55,8 +56,9 @@ fn take(
         return;
     }
     let Some((ray, _)) = pointer.ray() else { return };
-    let all = bodies.iter().filter_map(|(body, shown, particles)| {
-        let (i, along) = under(ray, shown.positions())?;
+    let all = bodies.iter().filter_map(|(body, shown, particles, springs)| {
+        let shortest = springs.and_then(|springs| springs.iter().map(|spring| spring.rest_length).reduce(f64::min));
+        let (i, along) = under(ray, shown.positions(), shortest.unwrap_or(1.0) as f32)?;
         Some((along, body, i, shown.positions()[i], particles.position(ParticleId(i as u32))?))
     });
     let Some((_, body, i, shown, at)) = all.min_by(|a, b| a.0.total_cmp(&b.0)) else { return };
@@ -64,18 +66,17 @@ fn take(
     commands.entity(body).insert(Pull { particle: ParticleId(i as u32), target: at });
 }
 
-/// The particle that a ray goes through first, and how far along.
-fn under(ray: Ray3d, positions: &[Vec3]) -> Option<(usize, f32)> {
+/// The particle of a body that a ray meets first, and how far along: of those within reach, the nearest to where the ray comes to the first of them.
+fn under(ray: Ray3d, positions: &[Vec3], rest_length: f32) -> Option<(usize, f32)> {
     let near = positions.iter().enumerate().filter_map(|(i, &at)| {
         let along = (at - ray.origin).dot(*ray.direction);
         let beside = at.distance(ray.origin + *ray.direction * along);
-        (along > 0.0 && beside < REACH.0 * along + REACH.1).then_some((i, along, beside))
+        (along > 0.0 && beside < REACH.0 * along + REACH.1 * rest_length).then_some((i, along, beside))
     });
-    // Of those in front, the one that the ray meets best.
     let near: Vec<_> = near.collect();
     let first = near.iter().map(|near| near.1).reduce(f32::min)?;
-    let front = near.into_iter().filter(|near| near.1 < first + 1.0);
-    front.min_by(|a, b| a.2.total_cmp(&b.2)).map(|(i, along, _)| (i, along))
+    let distance = |(_, along, beside): &(usize, f32, f32)| (along - first).hypot(*beside);
+    near.into_iter().min_by(|a, b| distance(a).total_cmp(&distance(b))).map(|(i, along, _)| (i, along))
 }
 
 /// Moves what pulls with the pointer, in the plane across the view in which the particle was taken, and lets go with the button.
@@ -123,8 +124,20 @@ mod tests {
         let ray = Ray3d { origin: Vec3::new(0.0, 0.0, 20.0), direction: Dir3::NEG_Z };
         // Behind another, beside, a little off, and behind the camera.
         let positions = [Vec3::ZERO, Vec3::X * 3.0, Vec3::new(0.1, 0.2, 5.0), Vec3::new(0.3, 0.0, 5.1), Vec3::Z * 30.0];
-        assert_eq!(under(ray, &positions).map(|(i, _)| i), Some(2));
-        assert_eq!(under(ray, &positions[..1]).map(|(i, _)| i), Some(0));
-        assert_eq!(under(ray, &positions[1..2]), None);
+        assert_eq!(under(ray, &positions, 1.0).map(|(i, _)| i), Some(2));
+        assert_eq!(under(ray, &positions[..1], 1.0).map(|(i, _)| i), Some(0));
+        assert_eq!(under(ray, &positions[1..2], 1.0), None);
+    }
+
+    #[test]
+    fn every_place_of_a_face_takes_the_mass_of_it_that_is_nearest() {
+        // Three masses each way; the face towards the eye is at z = 2.
+        let grid = |i: usize| Vec3::new((i % 3) as f32, (i / 3 % 3) as f32, (i / 9) as f32);
+        let positions: Vec<_> = (0..27).map(grid).collect();
+        for (x, y) in [(0.5, 0.5), (1.0, 1.0), (1.45, 0.52), (0.02, 1.9), (1.5, 1.5)] {
+            let ray = Ray3d { origin: Vec3::new(x, y, 12.0), direction: Dir3::NEG_Z };
+            let taken = grid(under(ray, &positions, 1.0).unwrap().0);
+            assert!(taken.z == 2.0 && (taken - Vec3::new(x, y, 2.0)).abs().max_element() <= 0.5, "{taken} at {x}, {y}");
+        }
     }
 }

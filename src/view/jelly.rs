@@ -35,16 +35,20 @@ pub(super) struct JellySkin {
     normals: Vec<Vec3>,
 }
 
-/// Spawns the skin of a block. Its colour says which neighbours are joined.
-pub(super) fn dress(body: Entity, lattice: Lattice, cloth: &mut Cloth<'_>, commands: &mut Commands) -> Entity {
-    let (outer, triangles) = surface(lattice.size());
-    let color = match (lattice.joins(Neighbours::Faces), lattice.joins(Neighbours::Cubes)) {
+/// The colour of the skin of a block, as 0xRRGGBB: it says which neighbours are joined.
+pub fn skin_color(lattice: Lattice) -> u32 {
+    match (lattice.joins(Neighbours::Faces), lattice.joins(Neighbours::Cubes)) {
         (false, false) => 0xe39b2f,
         (true, false) => 0x35a86b,
         (false, true) => 0x3f7fd6,
         (true, true) => 0xd0435a,
-    };
-    let [red, green, blue, _] = tint(color);
+    }
+}
+
+/// Spawns the skin of a block.
+pub(super) fn dress(body: Entity, lattice: Lattice, cloth: &mut Cloth<'_>, commands: &mut Commands) -> Entity {
+    let (outer, triangles) = surface(lattice.size());
+    let [red, green, blue, _] = tint(skin_color(lattice));
     let count = outer.len();
     let mesh = Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::default())
         .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, vec![[0.0; 3]; count])
@@ -95,14 +99,23 @@ pub(super) fn follow(
     }
 }
 
-/// The outer masses of a grid, and triangles between them by their order, counterclockwise as seen from outside.
+/// Whether a grid has a surface: a row of masses has none.
+pub(super) fn has_surface(lattice: Lattice) -> bool {
+    lattice.size().into_iter().filter(|count| *count > 1).count() > 1
+}
+
+/// The outer masses of a grid, and triangles between them by their order, counterclockwise as seen from outside. A mass of a single layer is there
+/// twice, once for each side: they look in opposite ways.
 fn surface(size: [usize; 3]) -> (Vec<usize>, Vec<[u32; 3]>) {
     let [across, along, layers] = size;
-    let (mut outer, mut vertices) = (Vec::new(), vec![None; across * along * layers]);
+    let mut outer = Vec::new();
+    // One vertex a mass, and another for the far side of a single layer.
+    let mut sides = [vec![None; across * along * layers], vec![None; across * along * layers]];
     let mut triangles = Vec::new();
     for axis in 0..3 {
         let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
         for far in [false, true] {
+            let vertices = &mut sides[usize::from(far && size[axis] == 1)];
             let mut vertex = |i: usize, j: usize| {
                 let mut place = [0; 3];
                 (place[axis], place[u], place[v]) = (if far { size[axis] - 1 } else { 0 }, i, j);
@@ -148,5 +161,25 @@ mod tests {
             })
             .sum();
         assert!((volume - 3.0 * 2.0 * 4.0).abs() < 1e-4, "{volume}");
+    }
+
+    #[test]
+    fn the_two_sides_of_a_single_layer_look_in_opposite_ways() {
+        let (outer, triangles) = surface([4, 3, 1]);
+        // Every mass twice, and two triangles a cell on each side.
+        assert_eq!((outer.len(), triangles.len()), (2 * 4 * 3, 2 * 2 * 3 * 2));
+        let side = |corner: u32| {
+            triangles.iter().filter(move |corners| corners.contains(&corner)).map(|corners| {
+                let [a, b, c] = corners.map(|corner| {
+                    let i = outer[corner as usize];
+                    Vec3::new((i % 4) as f32, (i / 4) as f32, 0.0)
+                });
+                (b - a).cross(c - a).z.signum()
+            })
+        };
+        for corner in 0..outer.len() as u32 {
+            let sides: Vec<_> = side(corner).collect();
+            assert!(!sides.is_empty() && sides.iter().all(|side| *side == sides[0]), "{corner}: {sides:?}");
+        }
     }
 }

@@ -33,9 +33,10 @@ mod worm_parts;
 
 use bevy::{math::DVec3, prelude::*, render::renderer::RenderAdapterInfo, winit::WinitPlugin};
 
-pub use adapter::{AdapterSummary, NoAdapter, adapter, display_available};
-pub use camera::{CoveredLeft, FollowWorm, PointerOnPanel, SceneCamera};
+pub use adapter::{AdapterSummary, NoAdapter, NoDisplay, adapter, display};
+pub use camera::{CoveredLeft, FollowWorm, LeaveToPanel, PointerOnPanel, SceneCamera};
 pub use help::KeyHelp;
+pub use jelly::skin_color;
 pub use offscreen::{Picture, Shot, ShotError};
 pub use peel::Peeled;
 pub use quality::Quality;

@@ -7,7 +7,7 @@ use bevy::{
 
 use super::{jelly, paint::Paint, plain, quality::Quality, six, strand, worm};
 use crate::{
-    body::{Lattice, Springs, Strand},
+    body::{Lattice, SpineFriction, Springs, Strand},
     creatures::Look,
     physics::{PhysicsSystems, Shown},
     scenes::{CurrentScene, Props, Runner, garden},
@@ -50,6 +50,7 @@ type Bodies<'w, 's> = Query<
         Option<&'static Strand>,
         Option<&'static Lattice>,
         Option<&'static Runner>,
+        Option<&'static SpineFriction>,
     ),
 >;
 
@@ -85,7 +86,7 @@ fn dress(
         }
         stays
     });
-    for (body, &look, shown, springs, strand, block, runner) in &bodies {
+    for (body, &look, shown, springs, strand, block, runner, friction) in &bodies {
         let (particles, held) = (shown.positions().len(), springs.map_or(0, Springs::len));
         if particles == 0 || skins.0.contains_key(&body) {
             continue;
@@ -111,7 +112,9 @@ fn dress(
             (Look::Strand(skin), Some(&strand), _) => {
                 strand::dress(body, strand, skin, &mut kits.strand, &mut cloth, &mut commands)
             }
-            (Look::Jelly, _, Some(&block)) => jelly::dress(body, block, &mut cloth, &mut commands),
+            (Look::Jelly, _, Some(&block)) if jelly::has_surface(block) => {
+                jelly::dress(body, block, &mut cloth, &mut commands)
+            }
             (Look::GardenWorm, ..) if particles >= 2 => {
                 let dye = runner.map(Runner::color).map(|[r, g, b]| Color::srgb_u8(r, g, b));
                 worm::dress(body, particles, dye, &kits.worm, &mut cloth.paints, &mut commands)
@@ -120,7 +123,7 @@ fn dress(
                 let Cloth { quality, meshes, paints, .. } = &mut cloth;
                 six::dress(body, skin, &mut kits.six, **quality, meshes, paints, &mut commands)
             }
-            _ => plain::dress(body, particles, springs, &kits.plain, &mut commands),
+            _ => plain::dress(body, particles, springs, friction, &kits.plain, &mut commands),
         };
         skins.0.insert(body, (root, look, particles, held));
     }

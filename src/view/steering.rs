@@ -1,6 +1,7 @@
 //! The player's hand: which animal is selected, where it is led with the arrow keys or a click on the ground, and marks that show both.
 
 use bevy::{ecs::system::SystemParam, math::DVec2, prelude::*, window::PrimaryWindow};
+use bevy_egui::{EguiContexts, EguiPostUpdateSet};
 
 use super::{
     camera::{PointerOnPanel, SceneCamera},
@@ -27,12 +28,33 @@ const REACH: f64 = 300.0;
 pub(super) fn plugin(app: &mut App) {
     app.init_resource::<Selected>()
         .add_systems(Update, (select, lead.run_if(not(typing)), point).chain().after(Dragging))
-        .add_systems(Update, mark.after(point));
+        .add_systems(Update, mark.after(point))
+        .add_systems(PostUpdate, keep_keys.after(EguiPostUpdateSet::EndPass).before(EguiPostUpdateSet::ProcessOutput));
 }
 
-/// Takes the first animal of a scene, and the next one at Tab.
+/// Takes from a panel the focus that Tab has given it while there are animals that Tab chooses: all keys would go to its buttons from then on. Who goes
+/// from field to field with Tab keeps it.
+fn keep_keys(
+    keys: Res<ButtonInput<KeyCode>>,
+    selected: Res<Selected>,
+    mut in_field: Local<bool>,
+    mut contexts: EguiContexts,
+) {
+    let Ok(context) = contexts.ctx_mut() else { return };
+    let was_in_field = core::mem::replace(&mut *in_field, context.text_edit_focused());
+    if selected.0.is_some() && keys.just_pressed(KeyCode::Tab) && !was_in_field {
+        context.memory_mut(|memory| {
+            if let Some(id) = memory.focused() {
+                memory.surrender_focus(id);
+            }
+        });
+    }
+}
+
+/// Takes the first animal of a scene, the next one at Tab, and one that is pressed on.
 fn select(
     keys: Res<ButtonInput<KeyCode>>,
+    held: Res<Held>,
     bodies: Option<Res<SceneBodies>>,
     animals: Query<(), With<Steer>>,
     mut selected: ResMut<Selected>,
@@ -40,7 +62,9 @@ fn select(
     let Some(bodies) = bodies else { return };
     let led: Vec<_> = bodies.0.iter().copied().filter(|body| animals.contains(*body)).collect();
     let at = led.iter().position(|body| Some(*body) == selected.0);
+    let pressed = held.0.map(|(body, ..)| body).filter(|body| held.is_changed() && led.contains(body));
     let next = match at {
+        _ if pressed.is_some() => pressed,
         Some(at) if keys.just_pressed(KeyCode::Tab) => led.get((at + 1) % led.len()).copied(),
         Some(_) => return,
         None => led.first().copied(),

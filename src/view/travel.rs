@@ -40,10 +40,20 @@ struct Seen {
 
 /// Where the animals of the scene are as a whole.
 #[derive(Default, Resource)]
-struct Herd {
+pub(super) struct Herd {
+    /// Their middle at the start.
+    middle_at_start: Vec3,
     /// How far apart they were at the start: the largest distance of one of them from the middle.
     reach_at_start: f32,
     seen: Option<Seen>,
+}
+
+impl Herd {
+    /// How far the animals have gone over the ground since the start, and how far away the scene's camera would stand by now that stood so far away then.
+    pub(super) fn since_start(&self, distance: f32) -> (Vec3, f32) {
+        let Some(seen) = self.seen else { return (Vec3::ZERO, distance) };
+        ((seen.middle - self.middle_at_start).with_y(0.0), seen.distance)
+    }
 }
 
 pub(super) fn plugin(app: &mut App) {
@@ -73,7 +83,7 @@ fn go_along(
     let now = middles.iter().sum::<Vec3>() / middles.len() as f32;
     let reach = middles.iter().map(|middle| middle.distance(now)).fold(0.0, f32::max);
     if herd.seen.is_none() {
-        herd.reach_at_start = reach;
+        (herd.middle_at_start, herd.reach_at_start) = (now, reach);
     }
     let scenes::Camera::Orbit { distance, .. } = scene.file.camera;
     let distance = distance as f32;

@@ -2,6 +2,7 @@
 
 mod support;
 
+mod alone;
 mod animal;
 mod animals;
 mod chart;
@@ -33,6 +34,8 @@ mod methods;
 mod panel;
 #[cfg(feature = "window")]
 mod panel_bodies;
+#[cfg(feature = "window")]
+mod panel_pages;
 mod parameters;
 #[cfg(feature = "window")]
 mod picture;

@@ -301,6 +301,7 @@ fn traces_are_bounded_and_begin_anew_when_time_goes_back() {
         masses: vec![("A".into(), if time < 400.0 { 0.0 } else { 1.0 })],
         distance: time,
         block: None,
+        side_by_side: Vec::new(),
     };
     let body = Entity::from_raw_u32(1).unwrap();
     let mut traces = Traces::default();

@@ -101,6 +101,22 @@ fn a_saved_race_keeps_its_methods() {
 }
 
 #[test]
+fn what_knows_no_method_cannot_race() {
+    let folder = tempfile::TempDir::new().unwrap();
+    let path = folder.path().join("bad.scene.ron");
+    let creatures = "[(name: \"a\", creature: \"inchworm\"), (name: \"b\", creature: \"inchworm\")]";
+    let text = format!("Scene(version: 1, title: \"Bad\", road: \"rough-road\", truth: \"a\", creatures: {creatures})");
+    std::fs::write(&path, text.replace("truth: \"a\", ", "")).unwrap();
+    scenes::load(path.to_str().unwrap()).unwrap();
+    std::fs::write(&path, text).unwrap();
+    let error = scenes::load(path.to_str().unwrap()).map(|_| ()).unwrap_err().to_string();
+    assert!(
+        error.contains("creatures[0]: \"a\" follows the six-matrix particle system") && error.contains("cannot race"),
+        "{error}"
+    );
+}
+
+#[test]
 fn a_race_without_its_truth_is_refused() {
     let folder = tempfile::TempDir::new().unwrap();
     let path = folder.path().join("bad.scene.ron");

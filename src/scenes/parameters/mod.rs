@@ -19,7 +19,7 @@ use super::{CurrentScene, SceneBodies};
 use crate::{
     body::{BodyError, Particles, Springs},
     creatures::library::looks_like,
-    mechanics::integrators::Method,
+    mechanics::integrators::{Method, StickRule},
     physics::Clock,
 };
 
@@ -141,6 +141,11 @@ pub fn set_method(world: &mut World, method: Method) {
 pub fn method(world: &mut World) -> Method {
     let first = bodies(world).into_iter().find_map(|body| world.get::<Method>(body).copied());
     first.or_else(|| world.get_resource::<CurrentScene>().map(|scene| scene.file.method)).unwrap_or_default()
+}
+
+/// When friction acts within a step of the scene: as for its first body with a method.
+pub fn stick(world: &mut World) -> StickRule {
+    bodies(world).into_iter().find_map(|body| world.get::<StickRule>(body).copied()).unwrap_or_default()
 }
 
 /// The methods of all bodies; nothing where a body has none.

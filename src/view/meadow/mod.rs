@@ -193,7 +193,7 @@ fn lines(middle: f32, also: &[f32]) -> Vec<f32> {
 }
 
 fn land(ground: &Ground, middle: Vec3) -> Clay {
-    let mut extra = Vec::new();
+    let (mut extra, mut extra_z) = (Vec::new(), Vec::new());
     if let Ground::Terrain(terrain) = ground {
         for surface in terrain.surfaces() {
             if let Surface::Cliff { edge, radius, .. } = *surface {
@@ -205,11 +205,13 @@ fn land(ground: &Ground, middle: Vec3) -> Clay {
         }
         for patch in terrain.patches() {
             if let Patch::Box { from, to, .. } = *patch {
-                extra.extend([from.0, to.0].iter().flat_map(|&x| [x as f32 - 0.01, x as f32 + 0.01]));
+                let beside = |edge: f64| [edge as f32 - 0.01, edge as f32 + 0.01];
+                extra.extend([from.0, to.0].into_iter().flat_map(beside));
+                extra_z.extend([from.1, to.1].into_iter().flat_map(beside));
             }
         }
     }
-    let (xs, zs) = (lines(middle.x, &extra), lines(middle.z, &[]));
+    let (xs, zs) = (lines(middle.x, &extra), lines(middle.z, &extra_z));
     let mut clay = Clay::default();
     clay.grid(zs.len(), xs.len(), |row, column| {
         // From far to near, so that the upper side is the outside.
