@@ -29,10 +29,11 @@ fn oscillator(ratio: f64) -> (Particles, Springs) {
     (particles, springs)
 }
 
-const RATIOS: [f64; 6] = [0.0, 0.1, 0.5, 1.0, 2.0, 5.0];
+/// The damping ratios of [`closed_forms`].
+pub(crate) const RATIOS: [f64; 6] = [0.0, 0.1, 0.5, 1.0, 2.0, 5.0];
 
 /// The largest ω·dt of one oscillator by damping ratio, by the closed forms.
-fn closed_forms(method: Method) -> Option<[f64; 6]> {
+pub(crate) fn closed_forms(method: Method) -> Option<[f64; 6]> {
     let kicks = [2.0, 1.80998, 1.23607, 0.82843, 0.47214, 0.19804];
     Some(match method.name() {
         "ExplicitEuler" => [0.0, 0.2, 1.0, 2.0, 0.53590, 0.20204],

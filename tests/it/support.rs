@@ -3,7 +3,7 @@
 use bevy::{math::DVec3, prelude::*, time::TimeUpdateStrategy};
 use wriggle::{
     body::{Muscle, Muscles, Particle, ParticleId, Particles, SpineFriction, Spring, SpringId, Springs, Wave},
-    mechanics::{BodyParts, integrators::Method},
+    mechanics::{Advance, BodyParts, Model, State, Timeline, integrators::Method},
     physics::{Clock, PhysicsPlugin},
 };
 
@@ -98,6 +98,43 @@ impl Body {
         }))
         .unwrap();
         self
+    }
+}
+
+/// Takes `steps` of `dt` with a body of `D` coordinates a particle, one by one from time 0, and shows it after each.
+pub fn follow<const D: usize>(body: &BodyParts<'_>, dt: f64, steps: u64, mut see: impl FnMut(f64, BodyParts<'_>)) {
+    let mut model = Model::<f64, D>::new(body, [], dt);
+    let mut state = State::new(body.particles.len());
+    state.set_lane(0, body.particles);
+    let mut particles = body.particles.clone();
+    let timeline = Timeline { dt, base_step: 0, base_time: 0.0 };
+    for first in 0..steps {
+        Advance { model: &mut model, state: &mut state, method: body.method, timeline, first, steps: 1 }.run();
+        state.write_lane(0, &mut particles);
+        see(timeline.time_at(first + 1), BodyParts { particles: &particles, ..*body });
+    }
+}
+
+/// A body on the x axis.
+pub struct Row {
+    pub particles: Particles,
+    pub springs: Springs,
+    pub muscles: Muscles,
+}
+
+impl Row {
+    pub fn new(particles: Particles, springs: Springs) -> Self {
+        let muscles = Muscles::new([], &springs).unwrap();
+        Self { particles, springs, muscles }
+    }
+
+    pub fn parts(&self, method: Method) -> BodyParts<'_> {
+        BodyParts { muscles: Some(&self.muscles), ..BodyParts::new(&self.particles, &self.springs, method) }
+    }
+
+    /// Takes `steps` one by one, and shows the body after each.
+    pub fn run(&self, method: Method, dt: f64, steps: u64, see: impl FnMut(f64, BodyParts<'_>)) {
+        follow::<1>(&self.parts(method), dt, steps, see);
     }
 }
 
