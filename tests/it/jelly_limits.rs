@@ -20,7 +20,7 @@ const OMEGA: [f64; 4] = [1.902, 3.204, 2.800, 3.804];
 const TURNED: Rotation = Rotation { axis: (1.0, 2.0, 3.0), angle: 50.0 };
 
 /// The stiffness matrix, unstretched.
-fn stiffness(particles: &Particles, springs: &Springs) -> Mat<f64> {
+pub(crate) fn stiffness(particles: &Particles, springs: &Springs) -> Mat<f64> {
     let mut matrix = Mat::zeros(3 * particles.len(), 3 * particles.len());
     for spring in springs.iter() {
         let [a, b] = spring.ends.map(|end| end.index());

@@ -9,6 +9,7 @@ mod chart;
 mod choosing;
 mod cli;
 mod clock;
+mod closed_forms;
 mod contact;
 mod crawlers;
 mod determinism;
