@@ -126,29 +126,40 @@ fn two_masses_crawl_by_their_stroke_less_what_friction_takes_of_it_by_every_meth
     for method in in_space() {
         let pair = Crawler { method, ..Crawler::PAIR };
         let expected = 0.25 * (0.2 - 2.0 * 0.2 * 0.1 * LOAD / 200.0);
-        let speed = pair.speed(2000, 3);
-        // Methods that solve for the velocity let Coulomb friction act at the end of the step in any case.
-        let solves = [Method::Leapfrog, Method::ImplicitMidpoint, Method::ImplicitEuler].contains(&method);
-        let (stiff, soft_part) = if solves { (0.05, 0.05) } else { (0.01, 0.015) };
-        assert_near(speed, expected, stiff, method.name());
-        let soft = Crawler { stiffness: 20.0, damping: 1.0, ..pair }.speed(2000, 3);
-        assert_near(soft, 0.25 * (0.2 - 2.0 * 0.2 * 0.1 * LOAD / 20.0), soft_part, method.name());
+        assert_near(pair.speed(2000, 3), expected, 0.01, method.name());
+        // A soft spring loses a tenth of the stroke to friction. At half the pace: the formula leaves out the inertia, which is 1 % of it at the other.
+        let soft = Crawler { stiffness: 20.0, damping: 1.0, frequency: 0.125, ..pair }.speed(2000, 3);
+        assert_near(soft, 0.125 * (0.2 - 2.0 * 0.2 * 0.1 * LOAD / 20.0), 0.01, method.name());
         // Friction that knows no forward goes nowhere.
         let null = Crawler { backward: 0.2, ..pair }.speed(2000, 3);
         assert!(null.abs() < 1e-10, "{}: {null}", method.name());
-        // With friction only at the end of a step, masses at rest creep by an error of first order.
-        let end = Crawler { stick: StickRule::EndOfStep, ..pair }.speed(2000, 3);
-        assert_near(end, expected, 0.05, method.name());
+        // With friction only at the end of a step, masses at rest creep by Runge–Kutta methods: an error of first order, 4 % where the others have 0.1 %.
+        let creeps = method.locates();
+        let end = Crawler { stick: StickRule::EndOfStep, ..pair };
+        assert_near(end.speed(if creeps { 16_000 } else { 2000 }, 1), expected, 0.01, method.name());
+        if creeps {
+            let errors = [8000, 16_000, 32_000].map(|steps| end.speed(steps, 1) - pair.speed(steps, 1));
+            for pair in errors.windows(2) {
+                let order = libm::log2(pair[0] / pair[1]);
+                assert!((order - 1.0).abs() < 0.3, "{}: order {order} in {errors:?}", method.name());
+            }
+        }
     }
 }
 
 #[test]
 fn many_legs_that_breathe_crawl_by_how_many_of_them_hold() {
-    for (legs, holding) in [(11, 3.0), (41, 13.0)] {
-        let crawler = Crawler { legs, ..MANY };
-        let expected = 0.1 * 0.2 * (1.0 - 2.0 * holding / f64::from(legs - 1));
-        assert_near(crawler.speed(MANY_STEPS, 1), expected, 0.01, &format!("{legs} legs"));
+    let expected = |legs: u32, holding: f64| 0.1 * 0.2 * (1.0 - 2.0 * holding / f64::from(legs - 1));
+    for method in in_space() {
+        let crawler = Crawler { legs: 11, method, ..MANY };
+        let (particles, springs, _) = crawler.parts();
+        let limit = BodyParts::new(&particles, &springs, method).stability_limit(0.0);
+        // At four fifths of what is stable, and no more than 2 ms: one pass of XPBD is soft with more.
+        let steps = u64::max(5000, (1.0 / (0.1 * 0.8 * limit)).ceil() as u64);
+        assert_near(crawler.speed(steps, 1), expected(11, 3.0), 0.01, method.name());
     }
+    let crawler = Crawler { legs: 41, ..MANY };
+    assert_near(crawler.speed(MANY_STEPS, 1), expected(41, 13.0), 0.01, "41 legs");
     let null = Crawler { legs: 11, forward: 0.2, ..MANY }.speed(MANY_STEPS, 1);
     assert!(null.abs() < 1e-12, "{null}");
 }
