@@ -3,11 +3,13 @@
 use bevy::{math::DVec3, prelude::*};
 use wriggle::{
     body::{Particle, ParticleId, Particles, Spring, Springs},
+    lab::{Problem, Reference},
     mechanics::integrators::{Method, StickRule},
     physics::{Cost, Frozen},
+    scenes,
 };
 
-use crate::support::{Worm, in_space, particles, stepping_app};
+use crate::support::{Worm, follow, in_space, particles, stepping_app};
 
 /// Positions and velocities along x.
 fn columns(particles: &Particles) -> Vec<f64> {
@@ -38,6 +40,23 @@ fn the_exact_flow_is_exact_whatever_the_step() {
     for dt in [20.0, 0.5, 0.05, 0.01] {
         let error = farthest(&worm_at_20(worm, StickRule::InStages, dt), &known);
         assert!(error < 1e-11, "{error:e} at dt {dt}");
+    }
+}
+
+#[test]
+fn the_exact_flow_is_the_reference_at_every_shared_time() {
+    for problem in [crate::lab::worm(Worm::EXACT.body()), Problem::of(&scenes::load("garden").unwrap()).unwrap()] {
+        let reference = Reference::solve(&problem).unwrap();
+        let body = problem.bodies[0].parts(Method::ExactFlow, StickRule::InStages);
+        let (mut sample, mut worst) = (0, 0.0_f64);
+        follow::<1>(&body, problem.spacing(), 1000, |time, body| {
+            assert!((time - problem.times()[sample]).abs() < 1e-12);
+            let pairs = body.particles.positions().zip(reference.positions(0, sample));
+            worst = pairs.map(|(x, y)| x.distance(*y)).fold(worst, f64::max);
+            sample += 1;
+        });
+        // The bound of the truth is 10⁻⁹; of the confirmed reference, what rounding leaves.
+        assert!(sample == 1000 && worst < 1e-11, "{}: {worst:e}", problem.name);
     }
 }
 
