@@ -12,8 +12,9 @@ use super::{CliError, Outcome, progress::progress_of};
 use crate::{
     creatures::library::{self, SCENE},
     lab::{
-        Gallery, GalleryError, LabError, Problem, StiffnessStudy, SweepOptions, Truth, WorkPrecision, chart::stiffness,
-        factors, measure, resumed_sweep, stiffness_study, study_stem,
+        Gallery, GalleryError, IS_DEBUG_BUILD, LabError, Problem, StiffRun, StiffnessStudy, StudiedRun, SweepOptions,
+        Truth, WorkPrecision, chart::stiffness, cheapest_run, factors, measure, resumed_stiffness_study, resumed_sweep,
+        study_stem,
     },
     mechanics::integrators::Method,
     scenes::{self, LoadedScene},
@@ -36,6 +37,11 @@ pub(super) fn chart(arguments: &ChartArguments) -> Result<Outcome, CliError> {
     let scenes = loaded(&arguments.scene)?;
     let gallery = Gallery::open(&arguments.out)?;
     let options = SweepOptions { quick: arguments.quick, ..SweepOptions::default() };
+    if IS_DEBUG_BUILD {
+        eprintln!(
+            "warning: this is a debug build, and its seconds are not those of a release build; evaluations and errors are the same"
+        );
+    }
     let mut out = io::stdout().lock();
     for (name, scene) in &scenes {
         for warning in &scene.warnings {
@@ -112,14 +118,18 @@ fn loaded(names: &[String]) -> Result<BTreeMap<String, LoadedScene>, CliError> {
     Ok(scenes)
 }
 
+/// The number changes with what is measured of a run.
+const POINTS: &str = "points 2";
+
 /// What a chart depends on: a chart is measured again when this has changed.
 fn key(problem: &Problem, options: &SweepOptions) -> String {
     let Problem { title, setting, time_scale, budget, unit, .. } = problem;
     let methods = Method::ALL.map(Method::name).join(" ");
     let version = env!("CARGO_PKG_VERSION");
+    let build = if IS_DEBUG_BUILD { "debug" } else { "release" };
     let quick = options.quick;
     format!(
-        "{:032x} {title:?} {setting:?} scale {time_scale} budget {budget} {unit:?} quick {quick} {methods} {version}",
+        "{:032x} {title:?} {setting:?} scale {time_scale} budget {budget} {unit:?} quick {quick} {methods} {version} {build} {POINTS}",
         problem.hash()
     )
 }
@@ -172,7 +182,22 @@ fn studied(
         return Ok((study, how));
     }
     let bar = progress_of(&problem.name, "runs");
-    let study = stiffness_study(problem, options, &mut |done, all, what| {
+    // What has no reference leaves nothing begun.
+    bar.set_message("reference");
+    options.cache.reference(problem)?;
+    let mut partial = gallery.partial_study(&problem.name, &key)?;
+    if !partial.is_empty() {
+        bar.suspend(|| eprintln!("{}: going on after {} runs", study_stem(&problem.name), partial.len()));
+    }
+    let mut find = |factor, stiff: &Problem, truth: &Truth, method| match partial.known(factor, method) {
+        Some(run) => Ok(run),
+        None => {
+            let run = StiffRun { method, run: cheapest_run(stiff, truth, method, options) };
+            partial.push(StudiedRun { factor, run })?;
+            Ok::<_, CliError>(run)
+        }
+    };
+    let study = resumed_stiffness_study(problem, options, &mut find, &mut |done, all, what| {
         bar.set_length(all as u64);
         bar.set_position(done as u64);
         bar.set_message(what.to_owned());

@@ -10,10 +10,12 @@ use directories::ProjectDirs;
 
 use crate::body::ParticleId;
 
-use super::{GaitSpeeds, LabError, Problem, Reference, Shapes, StickSlip, hash::Fnv, shapes::MEASURES};
+use super::{
+    GaitSpeeds, LabError, Problem, Reference, Shapes, StickSlip, energy::Energies, hash::Fnv, shapes::MEASURES,
+};
 
 /// The beginning of every reference. The number changes with the format and with what references are made of.
-const HEAD: &[u8] = b"wriggle reference 1\n";
+const HEAD: &[u8] = b"wriggle reference 2\n";
 /// The beginning of every file of speeds. The number changes with the format and with how they are found.
 const SPEEDS: &[u8] = b"wriggle gait speeds 1\n";
 /// The beginning of every file of shapes, likewise.
@@ -150,6 +152,9 @@ fn bytes(problem: &Problem, reference: &Reference) -> Vec<u8> {
     for vector in reference.positions.iter().chain(&reference.velocities).flatten() {
         bytes.extend(vector.to_array().into_iter().flat_map(f64::to_le_bytes));
     }
+    for energies in &reference.energies {
+        bytes.extend(energies.all.iter().chain([&energies.scale]).flat_map(|energy| energy.to_le_bytes()));
+    }
     with_checksum(bytes)
 }
 
@@ -186,7 +191,12 @@ fn read(problem: &Problem, bytes: &[u8]) -> Option<Reference> {
     let sizes = problem.bodies.iter().map(|body| body.particles.len());
     let positions = sizes.clone().map(|size| vectors(samples * size)).collect::<Option<_>>()?;
     let velocities = sizes.map(&mut vectors).collect::<Option<_>>()?;
-    rest.is_empty().then_some(Reference { positions, velocities, events, error })
+    let mut energies = || {
+        let all = (0..samples).map(|_| number(&mut rest)).collect::<Option<_>>()?;
+        Some(Energies { all, scale: number(&mut rest)? })
+    };
+    let energies = problem.bodies.iter().map(|_| energies()).collect::<Option<_>>()?;
+    rest.is_empty().then_some(Reference { positions, velocities, energies, events, error })
 }
 
 fn word(rest: &mut &[u8]) -> Option<[u8; 8]> {

@@ -6,7 +6,7 @@ use crate::mechanics::integrators::{Method, StickRule};
 
 use super::{
     Errors, LabError, Problem, ProblemBody, Setting,
-    run::{Run, center},
+    run::{Run, center, penetration},
 };
 
 /// The speeds of the gaits of a problem's bodies, by a method that is no candidate and in small steps.
@@ -36,7 +36,7 @@ impl GaitSpeeds {
         let largest = problem.setting.dt.min(0.5 * limit);
         let fine = |parts: f64| {
             let setting = Setting { method: Self::METHOD, stick: StickRule::InStages, dt: largest / parts };
-            all_speeds(problem, setting).ok_or_else(|| blown(setting.dt))
+            all_gaits(problem, setting).map(speeds).ok_or_else(|| blown(setting.dt))
         };
         let reference = Self { speeds: fine(16.0)?, error: 0.0 };
         let error = reference.apart(&fine(8.0)?);
@@ -55,13 +55,18 @@ impl GaitSpeeds {
 
     /// By how much a method misses the speeds; nothing where a body blows up.
     pub(super) fn errors_of(&self, problem: &Problem, setting: Setting) -> Option<Errors> {
-        let others = all_speeds(problem, setting)?;
+        let gaits = all_gaits(problem, setting)?;
+        let penetration = gaits.iter().filter_map(|gait| gait.penetration).reduce(f64::max);
+        let others = speeds(gaits);
         let parts: Vec<_> = self.parts(&others).collect();
         let ways = problem.bodies.iter().zip(self.speeds.iter().zip(&others));
         Some(Errors {
             largest: parts.iter().copied().fold(0.0, f64::max),
             rms: (parts.iter().map(|part| part * part).sum::<f64>() / parts.len().max(1) as f64).sqrt(),
             distance: ways.map(|(body, (own, other))| (own - other).abs() * cycles(problem, body)).fold(0.0, f64::max),
+            cycle: None,
+            energy: None,
+            penetration,
         })
     }
 
@@ -83,31 +88,55 @@ fn cycles(problem: &Problem, body: &ProblemBody) -> f64 {
     (4.0 * body.period().unwrap_or(problem.duration / 10.0)).min(problem.duration)
 }
 
-/// The speed of each body, each on a thread of its own; nothing where one blows up.
-fn all_speeds(problem: &Problem, setting: Setting) -> Option<Vec<f64>> {
-    let speed = |body: &ProblemBody| {
-        let last = cycles(problem, body);
-        let on_axis = body.parts(setting.method, setting.stick).on_axis();
-        let way = if on_axis { way::<1> } else { way::<3> };
-        Some(way(body, setting, [problem.duration - last, problem.duration])? / last)
-    };
-    let mut speeds = vec![None; problem.bodies.len()];
-    std::thread::scope(|scope| {
-        for (body, found) in problem.bodies.iter().zip(&mut speeds) {
-            scope.spawn(move || *found = speed(body));
-        }
-    });
-    speeds.into_iter().collect()
+/// How a body goes.
+#[derive(Clone, Copy, Debug)]
+struct Gait {
+    speed: f64,
+    /// How deep any particle ever was below the ground.
+    penetration: Option<f64>,
 }
 
-/// How far the centre of mass comes between two times, seen from above.
-fn way<const D: usize>(body: &ProblemBody, setting: Setting, times: [f64; 2]) -> Option<f64> {
+fn speeds(gaits: Vec<Gait>) -> Vec<f64> {
+    gaits.into_iter().map(|gait| gait.speed).collect()
+}
+
+/// How each body goes, each on a thread of its own; nothing where one blows up.
+fn all_gaits(problem: &Problem, setting: Setting) -> Option<Vec<Gait>> {
+    let gait = |body: &ProblemBody| {
+        let on_axis = body.parts(setting.method, setting.stick).on_axis();
+        let gait = if on_axis { gait::<1> } else { gait::<3> };
+        gait(body, setting, problem.duration, cycles(problem, body))
+    };
+    let mut gaits = vec![None; problem.bodies.len()];
+    std::thread::scope(|scope| {
+        for (body, found) in problem.bodies.iter().zip(&mut gaits) {
+            scope.spawn(move || *found = gait(body));
+        }
+    });
+    gaits.into_iter().collect()
+}
+
+/// How fast the centre of mass goes over the `last` part of a run, seen from above, and how deep the body comes.
+fn gait<const D: usize>(body: &ProblemBody, setting: Setting, duration: f64, last: f64) -> Option<Gait> {
+    /// At so many times it is seen how deep it is, evenly until the end.
+    const TIMES: usize = 200;
     let (mut run, mut positions) = (Run::<D>::new(body, setting, 0.0), Vec::new());
+    let mut penetration = None;
     let mut above = |time| {
         run.positions_at(body, time, &mut positions)?;
+        penetration = penetration.into_iter().chain(self::penetration(body, &positions)).reduce(f64::max);
         let at = center(body, &positions);
         Some(DVec2::new(at.x, at.z))
     };
-    let start = above(times[0])?;
-    Some(above(times[1])?.distance(start))
+    let start = duration - last;
+    let times = || (1..TIMES).map(|i| duration * (i as f64 / TIMES as f64));
+    for time in times().take_while(|&time| time < start) {
+        above(time)?;
+    }
+    let from = above(start)?;
+    for time in times().skip_while(|&time| time <= start) {
+        above(time)?;
+    }
+    let speed = above(duration)?.distance(from) / last;
+    Some(Gait { speed, penetration })
 }

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use thiserror::Error;
 
 use super::{
-    Partial, StiffnessStudy, WorkPrecision,
+    Partial, StiffnessStudy, StudiedRun, WorkPrecision,
     chart::{self, ChartError},
     csv,
     machine::machine,
@@ -112,8 +112,16 @@ impl Gallery {
         Partial::open(self.part(scene), problem, machine())
     }
 
-    fn part(&self, scene: &str) -> PathBuf {
-        self.file(scene, "part.jsonl")
+    /// Goes on with the study of stiffness of a scene that was interrupted, or begins one.
+    ///
+    /// # Errors
+    /// If the file of its runs cannot be written.
+    pub fn partial_study(&self, scene: &str, problem: &str) -> Result<Partial<StudiedRun>, GalleryError> {
+        Partial::open(self.part(&study_stem(scene)), problem, machine())
+    }
+
+    fn part(&self, stem: &str) -> PathBuf {
+        self.file(stem, "part.jsonl")
     }
 
     /// Keeps a chart as `NAME.csv`, `NAME.svg`, `NAME.png` and `NAME.json`. The last is written last: where it is, the chart is whole.
@@ -123,11 +131,14 @@ impl Gallery {
     pub fn keep(&self, problem: &str, chart: &WorkPrecision) -> Result<(), GalleryError> {
         let [svg, png] = [chart::svg(chart)?.into_bytes(), chart::png(chart)?];
         self.keep_files(&chart.scene, [csv(chart).into_bytes(), svg, png], &Kept { problem: problem.into(), chart })?;
-        // What was left of an interrupted sweep is in the chart now.
-        match fs::remove_file(self.part(&chart.scene)) {
-            Err(error) if error.kind() != io::ErrorKind::NotFound => {
-                Err(GalleryError::File { file: self.part(&chart.scene), error })
-            }
+        self.remove_part(&chart.scene)
+    }
+
+    /// What was left of an interruption is whole now.
+    fn remove_part(&self, stem: &str) -> Result<(), GalleryError> {
+        let file = self.part(stem);
+        match fs::remove_file(&file) {
+            Err(error) if error.kind() != io::ErrorKind::NotFound => Err(GalleryError::File { file, error }),
             _ => Ok(()),
         }
     }
@@ -139,7 +150,9 @@ impl Gallery {
     pub fn keep_study(&self, problem: &str, study: &StiffnessStudy) -> Result<(), GalleryError> {
         let [svg, png] = [chart::stiffness::svg(study)?.into_bytes(), chart::stiffness::png(study)?];
         let kept = Kept { problem: problem.into(), chart: study };
-        self.keep_files(&study_stem(&study.scene), [stiffness_csv(study).into_bytes(), svg, png], &kept)
+        let stem = study_stem(&study.scene);
+        self.keep_files(&stem, [stiffness_csv(study).into_bytes(), svg, png], &kept)?;
+        self.remove_part(&stem)
     }
 
     /// Writes a table, the pictures and last what they are made from.

@@ -2,9 +2,14 @@
 
 use std::{env, fs, path::Path, process::Command, time::UNIX_EPOCH};
 
-/// The processor and the commit, in words.
+/// Whether this program was built to find faults, and is slower than it has to be.
+pub const IS_DEBUG_BUILD: bool = cfg!(debug_assertions);
+
+/// The processor, the commit and how it was built, in words.
 pub(super) fn machine() -> String {
-    format!("{}, {}", processor(), commit())
+    let build =
+        if IS_DEBUG_BUILD { "debug build: its seconds are not those of a release build" } else { "release build" };
+    format!("{}, {}, {build}", processor(), commit())
 }
 
 fn processor() -> String {

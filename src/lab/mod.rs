@@ -3,6 +3,7 @@
 mod cache;
 pub mod chart;
 mod choose;
+mod energy;
 mod error;
 pub mod exercise;
 mod gait;
@@ -27,16 +28,17 @@ pub use choose::{Candidate, Choice, Search, cheapest, choose, frontier};
 pub use error::LabError;
 pub use gait::GaitSpeeds;
 pub use gallery::{Gallery, GalleryError, study_stem};
+pub use machine::IS_DEBUG_BUILD;
 pub use page::page;
-pub use partial::Partial;
+pub use partial::{Partial, StudiedRun};
 pub use problem::{Problem, ProblemBody};
-pub use record::{Errors, Point, Setting, Unit, WorkPrecision};
+pub use record::{Edge, Errors, Point, Setting, Unit, WorkPrecision};
 pub use reference::{Reference, StickSlip};
 pub use run::measure;
 pub use shapes::Shapes;
 pub use stiffness::{
-    Crossing, STIFFNESS_COLUMNS, StiffRun, StiffScene, StiffnessStudy, crossing, crossing_of, factors, stiffened,
-    stiffness_csv, stiffness_study, studied_methods,
+    Crossing, FindRun, STIFFNESS_COLUMNS, StiffRun, StiffScene, StiffnessStudy, cheapest_run, crossing, crossing_of,
+    factors, resumed_stiffness_study, stiffened, stiffness_csv, stiffness_study, studied_methods,
 };
 pub use sweep::{SweepOptions, resumed_sweep, sweep, work_precision};
 pub use table::{COLUMNS, csv};

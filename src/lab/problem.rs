@@ -1,6 +1,6 @@
 //! What a scene asks of a method: its bodies and how long they are followed, without anything that is only drawn.
 
-use bevy::{ecs::prelude::*, prelude::Name};
+use bevy::{ecs::prelude::*, math::DVec3, prelude::Name};
 
 use crate::{
     body::{
@@ -117,6 +117,14 @@ impl ProblemBody {
         let muscles = self.muscles.iter().flat_map(Muscles::iter).map(|muscle| muscle.period);
         let waves = self.waves.as_ref().and_then(TravelingWaves::longest_period);
         muscles.chain(waves).reduce(f64::max)
+    }
+
+    /// The length of the body: the largest distance between two of its particles at the start; 1 where all are in one place.
+    pub fn length(&self) -> f64 {
+        let positions: Vec<_> = self.particles.positions().collect();
+        let from = |(i, a): (usize, &DVec3)| positions[i..].iter().map(|b| a.distance(*b)).fold(0.0, f64::max);
+        let length = positions.iter().enumerate().map(from).fold(0.0, f64::max);
+        if length > 0.0 { length } else { 1.0 }
     }
 
     fn hash(&self, hash: &mut Fnv) {
@@ -252,6 +260,13 @@ impl Problem {
     /// The shared times, at which every run is compared with the reference: a thousand, evenly, the last at the end and none at the start.
     pub fn times(&self) -> Vec<f64> {
         (1..=SAMPLES).map(|i| self.duration * (i as f64 / SAMPLES as f64)).collect()
+    }
+
+    /// How many shared times a cycle of the longest muscle lasts; nothing where that is no whole number, or where no muscle is.
+    pub(super) fn samples_a_cycle(&self) -> Option<usize> {
+        let samples = self.period? / self.spacing();
+        let whole = libm::rint(samples);
+        (whole >= 1.0 && libm::fabs(samples - whole) < 1e-6).then_some(whole as usize)
     }
 
     /// Whether a method can step every body.

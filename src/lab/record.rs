@@ -31,10 +31,29 @@ pub enum Unit {
 pub struct Errors {
     /// Of the position of any particle (lengths), of the speed of any gait (as a part of it), or of any measure of a block (as a part of a cell).
     pub largest: f64,
-    /// Root mean square over particles and shared times, over gaits, or over measures and times.
+    /// Root mean square over particles and shared times, in [lengths of the body](crate::lab::ProblemBody::length); over gaits, or over measures and times.
     pub rms: f64,
     /// Of the way of the centre of mass at the end, of that over the last cycles of a gait, or of a block's height at the end (lengths).
     pub distance: f64,
+    /// Of the way of the centre of mass in a cycle of the longest muscle, the largest of all cycles (lengths); nothing where no reference is or no muscle.
+    pub cycle: Option<f64>,
+    /// Of the energy, in the largest that the reference ever has in motion and in springs; nothing where no reference is. What has no muscles, no
+    /// damping and no friction keeps its energy, so that this is the drift.
+    pub energy: Option<f64>,
+    /// How deep any particle ever was below the ground at two hundred times (lengths): no error to a reference. Nothing where no ground is.
+    pub penetration: Option<f64>,
+}
+
+/// The stability edge of a method: its largest stable step.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Edge {
+    /// The method.
+    pub method: Method,
+    /// The step; infinite where none makes the method unstable.
+    #[serde(with = "infinite")]
+    pub dt: f64,
+    /// Whether it follows from the eigenvalues of the linearised bodies; else it is a bound, and the edge may be larger.
+    pub predicted: bool,
 }
 
 /// One run of a scene's problem.
@@ -46,12 +65,21 @@ pub struct Point {
     pub steps: u64,
     /// Evaluations of the forces of all bodies.
     pub evaluations: u64,
+    /// How often it was timed.
+    pub runs: usize,
     /// The shortest of the timed runs, in seconds.
     pub seconds: f64,
     /// The median of the timed runs, in seconds.
     pub median_seconds: f64,
     /// Its errors; `None` where it blew up.
     pub errors: Option<Errors>,
+}
+
+impl Point {
+    /// The largest error; `None` where it blew up or is not finite.
+    pub fn largest_error(&self) -> Option<f64> {
+        self.errors.map(|errors| errors.largest).filter(|error| error.is_finite() && *error >= 0.0)
+    }
 }
 
 /// The work-precision chart of one scene as numbers.
@@ -67,9 +95,8 @@ pub struct WorkPrecision {
     pub real_time: f64,
     /// All runs, method by method and from the largest step down.
     pub points: Vec<Point>,
-    /// The stability limit of each method's step; infinite where none makes it unstable.
-    #[serde(with = "limits")]
-    pub limits: Vec<(Method, f64)>,
+    /// The stability edge of each method.
+    pub edges: Vec<Edge>,
     /// The scene's own setting.
     pub setting: Setting,
     /// What an error is.
@@ -84,18 +111,30 @@ pub struct WorkPrecision {
     pub machine: String,
 }
 
-/// Limits as they are written: JSON has no infinity, so a method without a limit has null.
-mod limits {
-    use serde::{Deserialize, Deserializer, Serializer};
+impl WorkPrecision {
+    /// An error is known when the reference is so many times surer.
+    pub const SURER: f64 = 100.0;
 
-    use super::Method;
-
-    pub(super) fn serialize<S: Serializer>(limits: &[(Method, f64)], serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_seq(limits.iter().map(|&(method, limit)| (method, limit.is_finite().then_some(limit))))
+    /// The least error that is known: [`Self::SURER`] times as large as what the reference and what confirms it differ by.
+    pub fn least_known_error(&self) -> f64 {
+        Self::SURER * self.reference_error
     }
 
-    pub(super) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<(Method, f64)>, D::Error> {
-        let limits = Vec::<(Method, Option<f64>)>::deserialize(deserializer)?;
-        Ok(limits.into_iter().map(|(method, limit)| (method, limit.unwrap_or(f64::INFINITY))).collect())
+    /// Whether the error of a run is known, and not as small as what the reference itself may be off by.
+    pub fn is_known(&self, point: &Point) -> bool {
+        point.largest_error().is_some_and(|error| error >= self.least_known_error())
+    }
+}
+
+/// Numbers as they are written that may be infinite: JSON has no infinity, so that is null.
+mod infinite {
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    pub(super) fn serialize<S: Serializer>(value: &f64, serializer: S) -> Result<S::Ok, S::Error> {
+        value.is_finite().then_some(value).serialize(serializer)
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+        Ok(Option::deserialize(deserializer)?.unwrap_or(f64::INFINITY))
     }
 }

@@ -5,12 +5,15 @@ use std::time::Instant;
 
 use bevy::math::DVec3;
 
-use crate::mechanics::{
-    Advance, Model, State, Timeline,
-    integrators::{Method, StickRule},
+use crate::{
+    body::Particles,
+    mechanics::{
+        Advance, Model, State, Timeline, ground_distance,
+        integrators::{Method, StickRule},
+    },
 };
 
-use super::{Errors, Point, Problem, ProblemBody, Reference, Setting, Truth};
+use super::{Errors, Point, Problem, ProblemBody, Reference, Setting, Truth, energy::Energy};
 
 /// A rest of a step that is a rounding error.
 const ROUNDING: f64 = 1e-9;
@@ -18,11 +21,11 @@ const ROUNDING: f64 = 1e-9;
 /// Runs a problem once to see how far it is from the truth, and then again as often as `repeats` says to see how long it takes.
 ///
 /// A shared time that no step ends at is met by one shorter step from the last step before it, which the run itself does not see. Only stepping is
-/// timed: all bodies one after the other on one thread, after a run that warms up. Runs that take long are repeated less often, three times
-/// at least; those that blow up are not.
+/// timed: all bodies one after the other on one thread, after a run that warms up. What would take more than a minute is repeated less often, three times
+/// at least; what blows up is not.
 pub fn measure(problem: &Problem, truth: &Truth, setting: Setting, repeats: usize) -> Point {
     /// How long a point may take.
-    const LONGEST: Duration = Duration::from_secs(10);
+    const LONGEST: Duration = Duration::from_secs(60);
     let errors = truth.errors_of(problem, setting);
     let steps = steps_to(problem.duration, setting.dt);
     let started = Instant::now();
@@ -39,7 +42,8 @@ pub fn measure(problem: &Problem, truth: &Truth, setting: Setting, repeats: usiz
     seconds.sort_by(f64::total_cmp);
     let half = seconds.len() / 2;
     let median = if seconds.len() % 2 == 1 { seconds[half] } else { 0.5 * (seconds[half - 1] + seconds[half]) };
-    Point { setting, steps, evaluations, seconds: seconds[0], median_seconds: median, errors }
+    let runs = seconds.len();
+    Point { setting, steps, evaluations, runs, seconds: seconds[0], median_seconds: median, errors }
 }
 
 /// How many steps of `dt` it takes to get to `time`.
@@ -99,52 +103,83 @@ fn end_of<const D: usize>(body: &ProblemBody, setting: Setting, steps: u64) -> V
 /// The errors of a run at the shared times; `None` where it blows up or its method refuses a step.
 pub(super) fn errors(problem: &Problem, reference: &Reference, setting: Setting) -> Option<Errors> {
     let times = problem.times();
-    let mut sum = Sum::default();
+    let cycle = problem.samples_a_cycle();
+    let mut sum = Sum { cycle: cycle.map(|_| 0.0), ..Sum::default() };
     for (index, body) in problem.bodies.iter().enumerate() {
-        let exact = |sample| reference.positions(index, sample);
+        let exact = Exact { reference, index, cycle };
         if body.parts(setting.method, setting.stick).on_axis() {
             compare::<1>(body, setting, &times, exact, &mut sum)?;
         } else {
             compare::<3>(body, setting, &times, exact, &mut sum)?;
         }
     }
-    Some(Errors { largest: sum.largest, rms: (sum.squares / sum.count.max(1.0)).sqrt(), distance: sum.distance })
+    let Sum { largest, distance, cycle, energy, .. } = sum;
+    let rms = (sum.squares / sum.count.max(1.0)).sqrt();
+    Some(Errors { largest, rms, distance, cycle, energy, penetration: None })
 }
 
 /// What errors are made from.
 #[derive(Default)]
 struct Sum {
     largest: f64,
+    /// In squares of lengths of the bodies.
     squares: f64,
     count: f64,
     distance: f64,
+    cycle: Option<f64>,
+    energy: Option<f64>,
 }
 
 impl Sum {
-    fn add(&mut self, positions: &[DVec3], exact: &[DVec3]) {
+    fn add(&mut self, positions: &[DVec3], exact: &[DVec3], length: f64) {
         for (position, exact) in positions.iter().zip(exact) {
-            let square = position.distance_squared(*exact);
-            self.largest = self.largest.max(square.sqrt());
-            self.squares += square;
+            let distance = position.distance(*exact);
+            self.largest = self.largest.max(distance);
+            self.squares += (distance / length).powi(2);
             self.count += 1.0;
         }
     }
 }
 
-fn compare<'r, const D: usize>(
+/// What a body is compared with.
+#[derive(Clone, Copy)]
+struct Exact<'r> {
+    reference: &'r Reference,
+    /// Which body it is.
+    index: usize,
+    /// How many shared times a cycle lasts.
+    cycle: Option<usize>,
+}
+
+fn compare<const D: usize>(
     body: &ProblemBody,
     setting: Setting,
     times: &[f64],
-    exact: impl Fn(usize) -> &'r [DVec3],
+    exact: Exact<'_>,
     sum: &mut Sum,
 ) -> Option<()> {
-    let (mut run, mut positions) = (Run::<D>::new(body, setting, 0.0), Vec::new());
+    let mut run = Run::<D>::new(body, setting, 0.0);
+    let (mut particles, mut positions) = (body.particles.clone(), Vec::new());
+    let length = body.length();
+    // How far ahead of the reference the centre of mass is, at the end of the last cycle and now.
+    let (mut last, mut ahead) = (DVec3::ZERO, DVec3::ZERO);
     for (sample, &time) in times.iter().enumerate() {
-        run.positions_at(body, time, &mut positions)?;
-        sum.add(&positions, exact(sample));
+        run.particles_at(body, time, &mut particles)?;
+        positions.clear();
+        positions.extend(particles.positions());
+        let known = exact.reference.positions(exact.index, sample);
+        sum.add(&positions, known, length);
+        let energy = exact.reference.energies[exact.index].apart(Energy::of(body, &particles, time), sample);
+        sum.energy = sum.energy.into_iter().chain(energy).reduce(f64::max);
+        ahead = center(body, &positions) - center(body, known);
+        if let (Some(largest), Some(cycle)) = (&mut sum.cycle, exact.cycle)
+            && (sample + 1).is_multiple_of(cycle)
+        {
+            *largest = largest.max(ahead.distance(last));
+            last = ahead;
+        }
     }
-    let centers = [center(body, &positions), center(body, exact(times.len() - 1))];
-    sum.distance = sum.distance.max(centers[0].distance(centers[1]));
+    sum.distance = sum.distance.max(ahead.length());
     Some(())
 }
 
@@ -156,6 +191,12 @@ pub(super) fn center(body: &ProblemBody, positions: &[DVec3]) -> DVec3 {
         return positions.iter().sum::<DVec3>() / positions.len().max(1) as f64;
     }
     positions.iter().zip(masses).map(|(&position, &mass)| position * mass).sum::<DVec3>() / total
+}
+
+/// How deep the deepest of these places is below the ground of a body; nothing where it has none.
+pub(super) fn penetration(body: &ProblemBody, positions: &[DVec3]) -> Option<f64> {
+    let ground = body.ground.as_ref()?;
+    Some(positions.iter().map(|&position| -ground_distance(ground, position).0).fold(0.0, f64::max))
 }
 
 /// A body on its way.
@@ -190,6 +231,15 @@ impl<const D: usize> Run<D> {
     /// Goes on to a time that is not before its last step and tells where the particles are then. Where no step ends, one shorter step is taken that the
     /// run itself does not see. `None` where the body has blown up or a step was refused.
     pub(super) fn positions_at(&mut self, body: &ProblemBody, time: f64, positions: &mut Vec<DVec3>) -> Option<()> {
+        self.look_at(body, time, |run| run.positions(body, positions))
+    }
+
+    /// The same with velocities; what an axis leaves out stays as it is.
+    fn particles_at(&mut self, body: &ProblemBody, time: f64, particles: &mut Particles) -> Option<()> {
+        self.look_at(body, time, |run| run.state.write_lane(0, particles))
+    }
+
+    fn look_at(&mut self, body: &ProblemBody, time: f64, look: impl FnOnce(&Self)) -> Option<()> {
         let setting = self.setting;
         let steps = (time / setting.dt + ROUNDING).floor() as u64;
         if steps > self.done {
@@ -200,9 +250,9 @@ impl<const D: usize> Run<D> {
             let mut part = Self::new(body, Setting { dt: time - start, ..setting }, start);
             part.state.clone_from(&self.state);
             part.advance(1)?;
-            part.positions(body, positions);
+            look(&part);
         } else {
-            self.positions(body, positions);
+            look(self);
         }
         Some(())
     }

@@ -7,11 +7,14 @@ use crate::mechanics::{
 
 use super::{
     Errors, LabError, Problem, ProblemBody, Setting,
-    run::{Run, center},
+    run::{Run, center, penetration},
 };
 
 /// How many numbers say how a block is at a moment.
 pub(super) const MEASURES: usize = 3;
+
+/// A block on its way: its moments, and how deep any of its particles ever was below the ground.
+type Way = (Vec<Moment>, Option<f64>);
 
 /// A block at a moment: its shape error and the height of its centre of mass in spacings, and its volume over that of the undeformed grid.
 type Moment = [f64; MEASURES];
@@ -48,6 +51,7 @@ impl Shapes {
         let fine = |parts: f64| {
             let setting = Setting { method: Self::METHOD, stick: StickRule::InStages, dt: largest / parts };
             all_moments(problem, setting)
+                .map(|(moments, _)| moments)
                 .ok_or_else(|| unsupported(format!("blocks that blow up with dt = {}", setting.dt)))
         };
         let reference = Self { moments: fine(16.0)?, error: 0.0 };
@@ -62,7 +66,7 @@ impl Shapes {
 
     /// By how much a method misses the shapes; nothing where a block blows up.
     pub(super) fn errors_of(&self, problem: &Problem, setting: Setting) -> Option<Errors> {
-        let others = all_moments(problem, setting)?;
+        let (others, penetration) = all_moments(problem, setting)?;
         let square: f64 = self.differences(&others).map(|difference| difference * difference).sum();
         let last = |moments: &[Moment], body: usize| moments[(body + 1) * Self::TIMES - 1][1];
         let heights = (0..problem.bodies.len()).map(|body| (last(&self.moments, body) - last(&others, body)).abs());
@@ -70,6 +74,9 @@ impl Shapes {
             largest: self.differences(&others).fold(0.0, f64::max),
             rms: (square / (MEASURES * others.len()).max(1) as f64).sqrt(),
             distance: heights.fold(0.0, f64::max),
+            cycle: None,
+            energy: None,
+            penetration,
         })
     }
 
@@ -80,24 +87,29 @@ impl Shapes {
 }
 
 /// All blocks at all times, each on a thread of its own; nothing where one blows up.
-fn all_moments(problem: &Problem, setting: Setting) -> Option<Vec<Moment>> {
-    let mut moments = vec![None; problem.bodies.len()];
+fn all_moments(problem: &Problem, setting: Setting) -> Option<Way> {
+    let mut ways = vec![None; problem.bodies.len()];
     std::thread::scope(|scope| {
-        for (body, found) in problem.bodies.iter().zip(&mut moments) {
+        for (body, found) in problem.bodies.iter().zip(&mut ways) {
             scope.spawn(move || *found = moments_of(body, setting, problem.duration));
         }
     });
-    moments.into_iter().collect::<Option<Vec<_>>>().map(|all| all.concat())
+    let ways = ways.into_iter().collect::<Option<Vec<Way>>>()?;
+    let penetration = ways.iter().filter_map(|(_, penetration)| *penetration).reduce(f64::max);
+    Some((ways.into_iter().flat_map(|(moments, _)| moments).collect(), penetration))
 }
 
-fn moments_of(body: &ProblemBody, setting: Setting, duration: f64) -> Option<Vec<Moment>> {
+fn moments_of(body: &ProblemBody, setting: Setting, duration: f64) -> Option<Way> {
     let lattice = body.lattice?;
     let (mut run, mut positions) = (Run::<3>::new(body, setting, 0.0), Vec::new());
+    let mut deepest = None;
     let times = (1..=Shapes::TIMES).map(|i| duration * (i as f64 / Shapes::TIMES as f64));
     let moments = times.map(|time| {
         run.positions_at(body, time, &mut positions)?;
+        deepest = deepest.into_iter().chain(penetration(body, &positions)).reduce(f64::max);
         let shape = BlockShape::of_places(&positions, lattice)?;
         Some([shape.shape_error, center(body, &positions).y, shape.volume.unwrap_or(1.0)])
     });
-    moments.collect()
+    let moments = moments.collect::<Option<_>>()?;
+    Some((moments, deepest))
 }

@@ -8,7 +8,8 @@ use crate::{
 };
 
 use super::{
-    Cache, LabError, Point, Problem, Setting, Truth, Unit, WorkPrecision,
+    Cache, Edge, LabError, Point, Problem, Setting, Truth, Unit, WorkPrecision,
+    limits::edges,
     machine::machine,
     run::{measure, steps_to, stick_matters},
 };
@@ -45,7 +46,7 @@ impl SweepOptions {
 
 /// Runs every method over its steps and compares with the truth of the scene's budget, but for the one that tells the truth of speeds or shapes and those that cannot step its bodies. Methods that let friction act in their stages are run once more with friction at
 /// the end of the step, where that makes a difference. The setting of the scene and that of the document are among the points. `progress` hears
-/// after every point how many of how many are done and what comes next or is left out; left out are runs of more than a thousand million spring
+/// after every point how many of how many are done and what comes next or is left out; left out are methods whose run at the stability edge takes more than a thousand million spring
 /// updates (a hundred million in a quick sweep).
 ///
 /// # Errors
@@ -84,7 +85,9 @@ pub fn resumed_sweep<E>(
     measure: &mut dyn FnMut(Setting) -> Result<Point, E>,
     progress: &mut dyn FnMut(usize, usize, &str),
 ) -> Result<WorkPrecision, E> {
-    let plan = plan(problem, truth, options, progress);
+    progress(0, 1, "stability edges");
+    let edges = edges(problem);
+    let plan = plan(problem, truth, &edges, options, progress);
     let mut points: Vec<Point> = Vec::with_capacity(plan.len());
     for (done, &setting) in plan.iter().enumerate() {
         progress(done, plan.len(), &format!("{} with dt {}", setting.method.name(), setting.dt));
@@ -97,7 +100,7 @@ pub fn resumed_sweep<E>(
         duration: problem.duration,
         real_time: problem.duration / problem.time_scale,
         points,
-        limits: Method::ALL.map(|method| (method, problem.stability_limit(method, StickRule::InStages))).into(),
+        edges,
         setting: problem.setting,
         unit: truth.unit(),
         budget: problem.budget,
@@ -115,27 +118,27 @@ pub(super) const DOCUMENT: Setting =
 fn plan(
     problem: &Problem,
     truth: &Truth,
+    edges: &[Edge],
     options: &SweepOptions,
     progress: &mut dyn FnMut(usize, usize, &str),
 ) -> Vec<Setting> {
     // Of gaits and blocks on the ground the document does not speak.
     let document = Some(DOCUMENT).filter(|_| truth.unit() == Unit::Length);
     let mut plan = Vec::new();
-    for method in Method::ALL.into_iter().filter(|method| truth.may_judge(problem, *method)) {
+    for &edge in edges.iter().filter(|edge| truth.may_judge(problem, edge.method)) {
+        let method = edge.method;
+        let ladder = ladder(problem, edge, options);
+        if ladder.is_empty() {
+            progress(plan.len(), plan.len(), &format!("left out: {}, which takes too long", method.name()));
+        }
         for stick in StickRule::ALL {
             let own: Vec<_> = document
                 .into_iter()
                 .chain([problem.setting])
                 .filter(|own| (own.method, own.stick) == (method, stick))
                 .collect();
-            let ladder = ladder(problem, method, stick, options);
             let is_other = stick == StickRule::InStages || stick_matters(problem, method, stick);
-            let (fits, too_long): (Vec<_>, Vec<_>) =
-                ladder.into_iter().partition(|&dt| work(problem, method, dt) <= options.most_work());
-            if let (true, Some(dt)) = (is_other, too_long.first()) {
-                progress(plan.len(), plan.len(), &format!("left out: {} from dt {dt:.3e} down", method.name()));
-            }
-            let mut steps: Vec<_> = if is_other { fits } else { Vec::new() };
+            let mut steps = if is_other { ladder.clone() } else { Vec::new() };
             steps.extend(own.iter().map(|own| own.dt));
             steps.sort_by(|a, b| b.total_cmp(a));
             steps.dedup();
@@ -145,24 +148,40 @@ fn plan(
     plan
 }
 
-/// The steps of a method: one above its stability edge, to see it fail, then from the edge down by halves, eight at least and as far as the
-/// document's step. A method without an edge starts at an eighth of the period.
-fn ladder(problem: &Problem, method: Method, stick: StickRule, options: &SweepOptions) -> Vec<f64> {
-    let limit = problem.stability_limit(method, stick);
-    let (above, edge) = match limit {
-        limit if limit > 0.0 && limit < problem.duration / 10.0 => (Some(2.0 * limit), limit),
+/// The steps of a method: one above its stability edge, to see it fail, then eight at least from the edge down by halves, and as far as the
+/// document's step; by less than halves where eight of those would take too long, and none where already the first does. A method without an edge starts
+/// at an eighth of the period.
+fn ladder(problem: &Problem, edge: Edge, options: &SweepOptions) -> Vec<f64> {
+    let (above, largest) = match edge.dt {
+        dt if dt > 0.0 && dt < problem.duration / 10.0 => (Some(2.0 * dt), dt),
         _ => (None, problem.period.unwrap_or(problem.duration / 10.0) / 8.0),
     };
-    let down = (0..).map(|halvings| edge / f64::from(1_u32 << halvings)).take(30).enumerate();
-    let down = down.take_while(|&(i, dt)| i < LEAST_STEPS || (!options.quick && dt >= 0.5 * DOCUMENT_DT));
-    above.into_iter().chain(down.map(|(_, dt)| dt)).collect()
+    let least = problem.duration / (options.most_work() / work_a_step(problem, edge.method)).floor();
+    if least > largest {
+        return Vec::new();
+    }
+    let halves = || (0..30).map(|halvings| largest / f64::from(1_u32 << halvings));
+    let eighth = halves().nth(LEAST_STEPS - 1).unwrap_or(largest);
+    let down: Vec<_> = if eighth < least {
+        let part = |i: usize| i as f64 / (LEAST_STEPS - 1) as f64;
+        (0..LEAST_STEPS).map(|i| least.max(largest * libm::pow(least / largest, part(i)))).collect()
+    } else {
+        let wanted =
+            |&(i, dt): &(usize, f64)| i < LEAST_STEPS || (!options.quick && dt >= least.max(0.5 * DOCUMENT_DT));
+        halves().enumerate().take_while(wanted).map(|(_, dt)| dt).collect()
+    };
+    above.into_iter().chain(down).collect()
 }
 
 /// About how many spring updates a run takes.
 pub(super) fn work(problem: &Problem, method: Method, dt: f64) -> f64 {
+    steps_to(problem.duration, dt) as f64 * work_a_step(problem, method)
+}
+
+/// About how many spring updates a step takes.
+fn work_a_step(problem: &Problem, method: Method) -> f64 {
     /// Of methods that do not know before how often they evaluate the forces.
     const MANY: u64 = 20;
     let springs: usize = problem.bodies.iter().map(|body| body.springs.len().max(body.particles.len())).sum();
-    let evaluations = steps_to(problem.duration, dt) * method.about().evaluations.unwrap_or(MANY);
-    evaluations as f64 * springs as f64
+    (method.about().evaluations.unwrap_or(MANY) * springs as u64) as f64
 }

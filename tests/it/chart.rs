@@ -3,7 +3,7 @@
 use ab_glyph::{Font, FontRef};
 use wriggle::{
     lab::{
-        Errors, Point, Setting, WorkPrecision,
+        Edge, Errors, Point, Setting, WorkPrecision,
         chart::{self, Cost, Guide, Look, Panel, Picture, Place, Rect, Shape, Text},
         page,
     },
@@ -18,9 +18,23 @@ pub fn point(method: Method, stick: StickRule, dt: f64, evaluations: u64, error:
         setting: Setting { method, stick, dt },
         steps,
         evaluations: steps * evaluations,
+        runs: 20,
         seconds,
         median_seconds: 1.15 * seconds,
-        errors: error.map(|largest| Errors { largest, rms: largest / 3.0, distance: largest / 2.0 }),
+        errors: error.map(errors_of),
+    }
+}
+
+/// All errors of a run, in proportion to the largest.
+fn errors_of(largest: f64) -> Errors {
+    let part = |part: f64| Some(largest / part);
+    Errors {
+        largest,
+        rms: largest / 3.0,
+        distance: largest / 2.0,
+        cycle: part(5.0),
+        energy: part(7.0),
+        penetration: None,
     }
 }
 
@@ -31,7 +45,7 @@ pub fn empty() -> WorkPrecision {
         duration: 20.0,
         real_time: 20.0 / 3.0,
         points: Vec::new(),
-        limits: Method::ALL.map(|method| (method, f64::INFINITY)).to_vec(),
+        edges: Method::ALL.map(|method| Edge { method, dt: f64::INFINITY, predicted: true }).to_vec(),
         setting: Setting { method: Method::RungeKutta4, stick: StickRule::InStages, dt: 0.05 },
         unit: wriggle::lab::Unit::Length,
         budget: 0.0089,
@@ -48,7 +62,7 @@ pub fn full() -> WorkPrecision {
         let order = f64::from(method.about().order);
         let evaluations = method.about().evaluations.unwrap_or(3);
         let limit = [0.7, 0.9, 1.1, 1.05, 0.72, 1.6, f64::INFINITY][i % 7];
-        chart.limits[i].1 = limit;
+        (chart.edges[i].dt, chart.edges[i].predicted) = (limit, i % 2 == 0);
         let sticks: &[_] = match order as u32 {
             2.. => &[StickRule::InStages, StickRule::EndOfStep],
             _ => &[StickRule::InStages],
@@ -81,7 +95,7 @@ fn exact() -> WorkPrecision {
     let mut chart = full();
     chart.points.truncate(30);
     for point in &mut chart.points[20..25] {
-        point.errors = Some(Errors { largest: 0.0, rms: 0.0, distance: 0.0 });
+        point.errors = Some(errors_of(0.0));
     }
     (chart.real_time, chart.reference_error) = (5e-4, 2e-5);
     chart
@@ -97,11 +111,11 @@ fn absurd() -> WorkPrecision {
             0 => point.setting.dt = value,
             1 => (point.seconds, point.median_seconds) = (value, values[(i + 3) % values.len()]),
             2 => (point.steps, point.evaluations) = (0, if value > 0.0 { u64::MAX } else { 0 }),
-            _ => point.errors = Some(Errors { largest: value, rms: value, distance: value }),
+            _ => point.errors = Some(errors_of(value)),
         }
     }
-    for (i, (_, limit)) in chart.limits.iter_mut().enumerate() {
-        *limit = values[i % values.len()];
+    for (i, edge) in chart.edges.iter_mut().enumerate() {
+        edge.dt = values[i % values.len()];
     }
     (chart.budget, chart.duration, chart.real_time) = (f64::NAN, f64::INFINITY, 0.0);
     (chart.reference_error, chart.setting.dt) = (f64::NAN, 0.0);
@@ -191,7 +205,7 @@ fn axes_are_logarithmic_and_a_decade_is_a_decade() {
 #[test]
 fn what_blew_up_stands_in_the_strip_at_the_cost_of_a_whole_run() {
     let mut chart = of_order_two();
-    chart.limits = vec![(Method::RungeKutta2, 0.7)];
+    chart.edges = vec![Edge { method: Method::RungeKutta2, dt: 0.7, predicted: true }];
     // Broken off after a few steps.
     let blown = Point { steps: 7, evaluations: 14, ..point(Method::RungeKutta2, StickRule::InStages, 1.0, 2, None) };
     let not_finite = point(Method::RungeKutta2, StickRule::InStages, 2.0, 2, Some(f64::NAN));
@@ -236,13 +250,58 @@ fn settings_and_real_time_are_where_they_were_measured_or_said() {
     assert!(said(&chart, "real time, 6.67 s:") && said(&chart, "further right"));
     let close = WorkPrecision { real_time: 1e-3, ..full() };
     let [evaluations, seconds] = chart::plot(&close).panels;
-    assert_eq!((evaluations.real_time, seconds.real_time), (None, Some(seconds.x.place(1e-3))));
+    let x = seconds.x.place(1e-3);
+    assert_eq!((evaluations.real_time, seconds.real_time), (None, Some(x)));
+    let upright = [(x, seconds.frame.top), (x, seconds.frame.bottom)];
+    let picture = chart::picture(&close);
+    let is_line = |shape: &&Shape| matches!(shape, Shape::Line { points, width: 2.2, .. } if points[..] == upright);
+    assert_eq!(picture.shapes.iter().filter(is_line).count(), 1, "on the axis it is a line");
+    assert!(said(&close, "real time: 0.001 s"));
     // Between two runs, a setting lies on the line between them.
     let mut between = of_order_two();
     between.setting = Setting { method: Method::RungeKutta2, stick: StickRule::InStages, dt: 0.1 };
     let panel = &chart::plot(&between).panels[0];
     assert!(distance_from(&panel.guides[1], panel.setting.unwrap()) < 1e-6);
     assert!(said(&empty(), "this scene: dt 0.05 was not measured"));
+}
+
+#[test]
+fn errors_that_the_reference_is_not_sure_enough_of_are_on_grey_and_marked() {
+    let count = |chart: &WorkPrecision| {
+        chart.points.iter().filter(|point| point.errors.is_some() && !chart.is_known(point)).count()
+    };
+    let [sure, unsure] = [1e-15, 1e-5].map(|reference_error| WorkPrecision { reference_error, ..full() });
+    assert!(count(&sure) == 0 && count(&unsure) > 10 && count(&unsure) < full().points.len() - 10);
+    let least = unsure.points.iter().filter(|point| unsure.is_known(point)).map(|point| point.largest_error().unwrap());
+    assert!(least.fold(f64::INFINITY, f64::min) >= 1e-3);
+    for (chart, frames) in [(&sure, 0), (&unsure, 2)] {
+        let picture = chart::picture(chart);
+        let grey = |shape: &&Shape| matches!(shape, Shape::Area { color: [0xe4, 0xe4, 0xe4], .. });
+        let top = |shape: &Shape| match shape {
+            Shape::Area { points, .. } => points[0].1,
+            _ => 0.0,
+        };
+        let tops: Vec<_> = picture.shapes.iter().filter(grey).map(top).collect();
+        assert_eq!(tops.len(), frames);
+        let place = chart::plot(chart).panels[0].y.place(1e-3);
+        assert!(tops.iter().all(|top| (top - place).abs() < 1e-9), "{tops:?}");
+        let said = picture.texts().any(|text| text.text.contains(&format!("{} of", count(chart))));
+        assert_eq!(said, frames > 0);
+        let html = page(std::slice::from_ref(chart), &[]).unwrap();
+        let marks = html.split("<details>").nth(1).unwrap().matches(" †</td>").count();
+        assert_eq!((marks, html.contains("<p>†")), (count(chart), frames > 0));
+    }
+}
+
+#[test]
+fn a_limit_that_is_a_bound_is_said_to_be_one() {
+    let mut chart = of_order_two();
+    chart.edges = vec![Edge { method: Method::RungeKutta2, dt: 0.7, predicted: false }];
+    let said =
+        |chart: &WorkPrecision, text: &str| chart::picture(chart).texts().filter(|drawn| drawn.text == text).count();
+    assert_eq!((said(&chart, "≥ 0.7"), said(&chart, "largest stable step (≥: a bound)")), (3, 1));
+    chart.edges[0].predicted = true;
+    assert_eq!((said(&chart, "0.7"), said(&chart, "largest stable step (linear)")), (3, 1));
 }
 
 /// All glyphs are in the bundled font, nothing is smaller than 12 pixels, outside of the picture or over another text.

@@ -6,7 +6,8 @@ use bevy::math::DVec3;
 use wriggle::{
     body::{Gravity, Muscle, Muscles, Particle, ParticleId, Particles, SpineFriction, Spring, SpringId, Springs, Wave},
     lab::{
-        Cache, GaitSpeeds, Problem, ProblemBody, Reference, Setting, SweepOptions, Truth, Unit, measure, work_precision,
+        Cache, Edge, GaitSpeeds, Point, Problem, ProblemBody, Reference, Setting, Shapes, SweepOptions, Truth, Unit,
+        limits::edges, measure, resumed_sweep, work_precision,
     },
     mechanics::integrators::{Method, StickRule},
     scenes,
@@ -301,6 +302,107 @@ fn a_run_that_blows_up_is_a_point_without_errors() {
     let known = run(0.0005).errors.unwrap();
     assert!((known.largest - 1.03e-3).abs() < 2e-4 && (known.distance - 1.0217e-3).abs() < 1e-6, "{known:?}");
     assert!(known.rms < known.largest);
+    // What is missed in the end is missed in its ten cycles about evenly, and all of it where there is one.
+    assert!((0.1..0.3).contains(&(known.cycle.unwrap() / known.distance)), "{known:?}");
+    let problem = Problem { duration: 2.0, ..problem };
+    let truth = Truth::of(&problem, &Cache::none()).unwrap();
+    let first = measure(&problem, &truth, Setting { dt: 0.01, ..SETTING }, 1).errors.unwrap();
+    assert_eq!((first.cycle, first.penetration), (Some(first.distance), None));
+}
+
+#[test]
+fn what_conserves_energy_drifts_as_its_method_lets_it() {
+    // Explicit Euler multiplies the energy of an oscillator without damping by 1 + (ω·dt)² a step.
+    let problem = Problem { duration: 5.0, ..oscillator(2.0, 0.0, 0.2) };
+    let truth = Truth::of(&problem, &Cache::none()).unwrap();
+    let drift = |method, dt| {
+        let setting = Setting { method, stick: StickRule::InStages, dt };
+        measure(&problem, &truth, setting, 1).errors.unwrap().energy.unwrap()
+    };
+    let law = libm::pow(1.0 + 2.0 * 4.0 / 3.0 * 1e-6, 5000.0) - 1.0;
+    let found = drift(Method::ExplicitEuler, 1e-3);
+    assert!((found / law - 1.0).abs() < 1e-8, "{found}, by the law {law}");
+    // Semi-implicit Euler keeps it within a half of ω·dt, and the midpoint rule, of what is linear, altogether.
+    let theta = 1e-2 * f64::sqrt(2.0 * 4.0 / 3.0);
+    let bounded = drift(Method::SemiImplicitEuler, 1e-2);
+    assert!(bounded < 0.5 * theta / (1.0 - 0.5 * theta) && bounded > 0.2 * theta, "{bounded}");
+    assert!(drift(Method::ImplicitMidpoint, 0.1) < 1e-10);
+}
+
+#[test]
+fn the_mean_error_is_in_lengths_of_the_body() {
+    // A pinned mass far away makes the body eight times as long, and is where it should be.
+    let short = oscillator(2.0, 0.3, 0.2);
+    let mut long = short.clone();
+    let at = |i| long.bodies[0].particles.get(ParticleId(i)).unwrap();
+    let pin = Particle { pinned: true, ..Particle::at(DVec3::X * 9.6) };
+    long.bodies[0].particles = Particles::new([at(0), at(1), pin]).unwrap();
+    assert_eq!([&short, &long].map(|problem| problem.bodies[0].length()), [1.2, 9.6]);
+    let [short, long] = [short, long].map(|problem| {
+        let truth = Truth::of(&problem, &Cache::none()).unwrap();
+        measure(&problem, &truth, SETTING, 1).errors.unwrap()
+    });
+    assert_eq!(short.largest, long.largest);
+    let ratio = short.rms / long.rms;
+    assert!((ratio / (8.0 * f64::sqrt(3.0 / 2.0)) - 1.0).abs() < 1e-9, "{ratio}");
+}
+
+#[test]
+fn the_edges_of_the_garden_are_those_of_its_linearised_worm() {
+    // Three equal masses and two springs: modes of κ = k and 3k with γ = D and 3D. The larger one decides: θ³/4 − ζθ² + 2ζ²θ − 2ζ = 0 by RK2,
+    // θ = 2(√(1 + ζ²) − ζ) by semi-implicit Euler, and 2 by leapfrog.
+    let problem = Problem::of(&scenes::load("garden").unwrap()).unwrap();
+    let edges = edges(&problem);
+    assert_eq!(edges.len(), Method::ALL.len());
+    let omega = f64::sqrt(3.0 * 1.5);
+    let zeta = 3.0 * 0.9 / (2.0 * omega);
+    let theta = |method| {
+        let edge = edges.iter().find(|edge| edge.method == method).unwrap();
+        assert!(edge.predicted);
+        omega * edge.dt
+    };
+    let two = theta(Method::RungeKutta2);
+    let cubic = two.powi(3) / 4.0 - zeta * two * two + 2.0 * zeta * zeta * two - 2.0 * zeta;
+    assert!(cubic.abs() < 1e-6 && (two / omega - 1.01).abs() < 1e-3, "{cubic} at {two}");
+    assert!((theta(Method::SemiImplicitEuler) - 2.0 * (f64::sqrt(1.0 + zeta * zeta) - zeta)).abs() < 1e-6);
+    assert!((theta(Method::Leapfrog) - 2.0).abs() < 1e-6);
+    assert!(theta(Method::ImplicitEuler).is_infinite());
+    // The bound is another.
+    assert!(problem.stability_limit(Method::RungeKutta2, StickRule::InStages) < 0.7);
+}
+
+#[test]
+fn every_method_has_eight_steps_of_a_block_from_its_edge_down() {
+    let problem = Problem::of(&scenes::load("jelly").unwrap()).unwrap();
+    // A short fall is enough of a truth for a sweep that does not measure.
+    let truth = Truth::of(&Problem { duration: 1.0, ..problem.clone() }, &Cache::none()).unwrap();
+    let options = SweepOptions { quick: false, cache: Cache::none() };
+    let mut nothing = |setting| {
+        Ok::<_, ()>(Point {
+            setting,
+            steps: 1,
+            evaluations: 1,
+            runs: 1,
+            seconds: 1.0,
+            median_seconds: 1.0,
+            errors: None,
+        })
+    };
+    let chart = resumed_sweep(&problem, &truth, &options, &mut nothing, &mut |_, _, _| {}).unwrap();
+    for &Edge { method, dt, predicted } in &chart.edges {
+        let points = chart.points.iter().filter(|point| point.setting.method == method);
+        let mut steps: Vec<_> = points.map(|point| point.setting.dt).collect();
+        if [Shapes::METHOD, Method::ExactFlow].contains(&method) {
+            assert!(steps.is_empty(), "{method:?}");
+            continue;
+        }
+        assert!(predicted && steps.len() >= 8, "{method:?} has {} steps", steps.len());
+        if dt.is_finite() {
+            assert_eq!((steps.remove(0), steps[0]), (2.0 * dt, dt), "{method:?}");
+        }
+        steps.retain(|step| *step != problem.setting.dt);
+        assert!(steps.len() >= 8 && steps.is_sorted_by(|a, b| a > b), "{method:?}: {steps:?}");
+    }
 }
 
 #[test]
@@ -377,8 +479,12 @@ fn a_sweep_has_eight_steps_of_every_method_and_both_settings() {
     let chart =
         work_precision(&scene, &options, &mut |done, total, what| said.push((done, total, what.to_owned()))).unwrap();
     assert_eq!((chart.scene.as_str(), chart.duration, chart.real_time), ("glide", 20.0, 20.0));
+    assert_eq!(chart.edges, edges(&Problem::of(&scene).unwrap()));
     for method in Method::ALL {
         let steps: Vec<_> = chart.points.iter().filter(|point| point.setting.method == method).collect();
+        let edge = chart.edges.iter().find(|edge| edge.method == method).unwrap().dt;
+        assert!(edge.is_infinite() || [2.0 * edge, edge] == [0, 1].map(|i| steps[i].setting.dt), "{method:?}");
+        assert!(steps.iter().all(|point| point.runs == if point.errors.is_some() { 3 } else { 1 }));
         assert!(steps.len() >= 8, "{method:?} has {} points", steps.len());
         for pair in steps.windows(2).filter(|pair| pair[0].setting.stick == pair[1].setting.stick) {
             assert!(pair[0].setting.dt > pair[1].setting.dt && pair[0].steps < pair[1].steps);
@@ -440,9 +546,25 @@ fn a_sweep_on_the_ground_is_of_the_speeds_of_gaits() {
         let finest = points.min_by(|a, b| a.setting.dt.total_cmp(&b.setting.dt)).unwrap();
         let errors = finest.errors.unwrap();
         assert!(errors.largest < 0.01 && errors.rms <= errors.largest && errors.distance < 0.1, "{finest:?}");
+        // Flat ground lets nothing in, and no energy is known.
+        assert_eq!((errors.penetration, errors.energy, errors.cycle), (Some(0.0), None, None));
     }
     let own = chart.points.iter().find(|point| point.setting == chart.setting).unwrap();
     assert!(own.errors.unwrap().largest <= 0.01, "{own:?}");
+}
+
+#[test]
+fn what_is_below_the_ground_is_seen() {
+    let mut problem = Problem::of(&scenes::load("two-masses").unwrap()).unwrap();
+    let mut sunk = problem.bodies[0].clone();
+    sunk.muscles = None;
+    let first = sunk.particles.get(ParticleId(0)).unwrap();
+    let below = Particle { position: first.position - 0.25 * DVec3::Y, pinned: true, ..first };
+    sunk.particles.set(ParticleId(0), below).unwrap();
+    problem.bodies.push(sunk);
+    let truth = Truth::of(&problem, &Cache::none()).unwrap();
+    let errors = measure(&problem, &truth, problem.setting, 1).errors.unwrap();
+    assert_eq!(errors.penetration, Some(0.25 - first.position.y));
 }
 
 #[test]

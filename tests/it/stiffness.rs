@@ -6,9 +6,9 @@ use tempfile::TempDir;
 use wriggle::{
     lab::{
         Cache, Crossing, Gallery, LabError, Point, Problem, STIFFNESS_COLUMNS, StiffRun, StiffScene, StiffnessStudy,
-        SweepOptions,
+        StudiedRun, SweepOptions, Truth,
         chart::{Look, Shape, stiffness},
-        crossing, factors, page, stiffened, stiffness_csv, stiffness_study, studied_methods,
+        crossing, factors, page, resumed_stiffness_study, stiffened, stiffness_csv, stiffness_study, studied_methods,
     },
     mechanics::integrators::{Method, StickRule},
     scenes,
@@ -200,6 +200,57 @@ fn a_study_stands_on_the_page_of_its_scene_and_is_kept() {
     assert!(gallery.finished_study("garden", "a").is_none() && gallery.finished("garden", "a").is_some());
     let html = fs::read_to_string(gallery.write_page().unwrap()).unwrap();
     assert_eq!((html.matches("<h2>").count(), html.matches("<svg").count()), (1, 2), "a study is no chart of its own");
+}
+
+#[test]
+fn an_interrupted_study_goes_on_where_it_stopped() {
+    let folder = TempDir::new().unwrap();
+    let gallery = Gallery::open(folder.path()).unwrap();
+    let mut problem = Problem::of(&scenes::load("garden").unwrap()).unwrap();
+    problem.duration = 0.5;
+    let options = SweepOptions { quick: true, cache: Cache::none() };
+    // How many runs are found before it ends, or is interrupted after so many.
+    let study = |most: usize| {
+        let mut partial = gallery.partial_study("garden", "a").unwrap();
+        let mut found = 0;
+        let mut find = |factor, _: &Problem, _: &Truth, method| {
+            if let Some(run) = partial.known(factor, method) {
+                return Ok(run);
+            }
+            if found == most {
+                return Err(LabError::NothingFits { scene: "interrupted".into(), budget: 0.0 });
+            }
+            found += 1;
+            // Some methods find nothing, which is known then, too.
+            let seconds = factor * (1 + method as usize) as f64;
+            let known = point(method, StickRule::InStages, 0.1, 2, Some(0.005));
+            let run = (method != Method::Xpbd).then_some(Point { seconds, ..known });
+            partial.push(StudiedRun { factor, run: StiffRun { method, run } }).unwrap();
+            Ok(StiffRun { method, run })
+        };
+        let study = resumed_stiffness_study(&problem, &options, &mut find, &mut |_, _, _| {});
+        (study, found)
+    };
+    let all = factors(true).len() * studied_methods().count();
+    let (interrupted, found) = study(all - 3);
+    assert!(interrupted.is_err() && found == all - 3);
+    let file = gallery.file("garden-stiffness", "part.jsonl");
+    let text = fs::read_to_string(&file).unwrap();
+    fs::write(&file, &text[..text.len() - 9]).unwrap();
+    let (whole, found) = study(usize::MAX);
+    assert_eq!(found, 4, "those that were missing and the one that was cut off");
+    let whole = whole.unwrap();
+    let runs = || whole.scenes.iter().flat_map(|scene| scene.runs.iter().map(move |run| (scene.factor, run)));
+    assert_eq!(runs().count(), all);
+    for (factor, StiffRun { method, run }) in runs() {
+        assert_eq!(
+            run.map(|run| run.seconds),
+            (*method != Method::Xpbd).then_some(factor * (1 + *method as usize) as f64)
+        );
+    }
+    assert!(gallery.partial_study("garden", "b").unwrap().is_empty(), "another problem begins anew");
+    gallery.keep_study("a", &whole).unwrap();
+    assert!(!file.exists() && gallery.finished_study("garden", "a").is_some());
 }
 
 #[test]

@@ -25,6 +25,8 @@ pub(super) const SMALL: f64 = 12.5;
 pub(super) const BLACK: Color = [0; 3];
 pub(super) const GREY: Color = [0x66; 3];
 pub(super) const BUDGET: Color = [0xdf, 0xef, 0xe6];
+/// The ground of errors that are not known.
+const UNKNOWN: Color = [0xe4; 3];
 pub(super) const BUDGET_EDGE: Color = [0x3d, 0x7a, 0x5c];
 pub(super) const GUIDE: Color = [0x9a; 3];
 pub(super) const STAR_FILL: Color = [0xf0, 0xe4, 0x42];
@@ -35,6 +37,9 @@ pub(super) fn draw(picture: &mut Picture, chart: &WorkPrecision, plot: &Plot, pa
     let levels = words::levels(chart, panel);
     if let Some(budget) = levels.iter().find(|level| level.band) {
         picture.area(Rect { top: budget.y, ..panel.frame }.corners(), BUDGET, 1.0);
+    }
+    if let Some(top) = words::unknown(chart, panel) {
+        picture.area(Rect { top, ..panel.frame }.corners(), UNKNOWN, 1.0);
     }
     grid(picture, chart.unit, plot, panel, first);
     strip(picture, plot, panel, first);

@@ -35,6 +35,14 @@ pub(super) fn bottom(caption: &[String]) -> f64 {
 
 /// What stands below a chart, in lines.
 pub(super) fn caption(chart: &WorkPrecision) -> Vec<String> {
+    let good = || chart.points.iter().filter(|point| point.largest_error().is_some());
+    let unknown = match good().filter(|point| !chart.is_known(point)).count() {
+        0 => String::new(),
+        count => format!(
+            " {count} of {} errors are below a hundred times that, on grey: how small they are is not known for sure.",
+            good().count()
+        ),
+    };
     lines(&[
         format!(
             "Friction acts in the stages of a method unless its name says “at end”. Arithmetic in f64. Real time, in which the app \
@@ -43,7 +51,7 @@ pub(super) fn caption(chart: &WorkPrecision) -> Vec<String> {
             short(chart.real_time)
         ),
         format!(
-            "Reference: {}; the two differ by {}.",
+            "Reference: {}; the two differ by {}.{unknown}",
             chart.reference.trim_end_matches('.'),
             short(chart.reference_error)
         ),
@@ -138,7 +146,11 @@ fn signs(chart: &WorkPrecision, plot: &Plot) -> Vec<(String, Sign)> {
             Box::new(move |picture, y| figure::cross(picture, (middle, y), figure::GREY)),
         ),
         (
-            "largest stable step (linear)".into(),
+            if chart.edges.iter().all(|edge| edge.predicted) {
+                "largest stable step (linear)".into()
+            } else {
+                "largest stable step (≥: a bound)".into()
+            },
             Box::new(move |picture, y| picture.line([(middle, y - 8.0), (middle, y + 8.0)], figure::GREY, 2.2)),
         ),
         (

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::{Look, scale::short};
-use crate::lab::{Point, Setting, WorkPrecision};
+use crate::lab::{Edge, Point, Setting, WorkPrecision};
 use crate::mechanics::integrators::{Method, StickRule};
 
 /// What a run costs.
@@ -32,8 +32,8 @@ pub struct Series {
     pub method: Method,
     /// When friction acts.
     pub stick: StickRule,
-    /// The limit of its step; `None` where it is not known.
-    pub limit: Option<f64>,
+    /// Its stability edge; `None` where it is not known.
+    pub limit: Option<Edge>,
     /// Runs that did not blow up, from the largest step down.
     pub good: Vec<Point>,
     /// Runs that did.
@@ -42,7 +42,7 @@ pub struct Series {
 
 /// The largest position error of a run; `None` where it blew up or is not finite.
 pub fn error(point: &Point) -> Option<f64> {
-    point.errors.map(|errors| errors.largest).filter(|error| error.is_finite() && *error >= 0.0)
+    point.largest_error()
 }
 
 impl Series {
@@ -57,7 +57,7 @@ impl Series {
             let series = sorted.entry((method, stick)).or_insert_with(|| Self {
                 method,
                 stick,
-                limit: chart.limits.iter().find(|(other, _)| *other == method).map(|&(_, limit)| limit),
+                limit: chart.edges.iter().find(|edge| edge.method == method).copied(),
                 good: Vec::new(),
                 blown: Vec::new(),
             });
@@ -86,11 +86,13 @@ impl Series {
         }
     }
 
-    /// Its limit in words.
+    /// The largest stable step in words; `≥` before a bound.
     pub fn limit_text(&self) -> String {
         match self.limit {
-            Some(limit) if limit == f64::INFINITY => "none".into(),
-            Some(limit) if limit.is_finite() => short(limit),
+            Some(Edge { dt: f64::INFINITY, .. }) => "none".into(),
+            Some(Edge { dt, predicted, .. }) if dt.is_finite() => {
+                format!("{}{}", if predicted { "" } else { "≥ " }, short(dt))
+            }
             _ => "unknown".into(),
         }
     }
@@ -117,7 +119,7 @@ impl Series {
 
     /// The stability limit, where it is a step that can be shown.
     pub fn edge(&self) -> Option<f64> {
-        self.limit.filter(|limit| limit.is_finite() && *limit > 0.0)
+        self.limit.map(|edge| edge.dt).filter(|limit| limit.is_finite() && *limit > 0.0)
     }
 
     /// Cost and error of a setting: as measured, or on the straight line between the two runs around its step.

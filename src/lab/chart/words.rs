@@ -24,13 +24,22 @@ pub(super) struct Level {
 pub(super) fn levels(chart: &WorkPrecision, panel: &Panel) -> Vec<Level> {
     let budget = (chart.budget, "good enough: error below", BUDGET_EDGE, true);
     let reference = (chart.reference_error, "the reference itself is sure to", GREY, false);
-    let shown = [budget, reference].into_iter().filter(|(error, ..)| panel.y.shows(*error));
+    let known =
+        (chart.least_known_error(), "a hundred times as much: smaller errors are not known, below", GREY, false);
+    let shown = [budget, reference, known].into_iter().filter(|(error, ..)| panel.y.shows(*error));
     shown
         .map(|(error, text, color, band)| {
             let text = format!("{text} {}", short(error));
             Level { y: panel.y.place(error), text, color, band }
         })
         .collect()
+}
+
+/// Where the zone begins in which errors are not known: at the top of the frame where none of its errors are, nowhere where all are.
+pub(super) fn unknown(chart: &WorkPrecision, panel: &Panel) -> Option<f64> {
+    let [low, high] = panel.y.logs();
+    let least = libm::log10(chart.least_known_error());
+    (least > low).then(|| panel.y.place_log(least.min(high)))
 }
 
 /// What lines and bands mean, written at them.

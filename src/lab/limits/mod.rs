@@ -5,6 +5,7 @@
 //! method's own step near the body's pose, with friction and contact off; and at the **scene**'s limit the body explodes with its muscles running.
 
 mod alike;
+mod edges;
 mod iterated;
 mod linearised_step;
 mod predicted;
@@ -24,6 +25,7 @@ use crate::{
     scenes::LoadedScene,
 };
 
+pub use edges::edges;
 pub use predicted::predicted_limit;
 pub use scene::scene_limit;
 pub use six::linearised_six_limit;

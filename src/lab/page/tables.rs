@@ -5,7 +5,7 @@ use core::fmt::Write;
 use super::escape;
 use crate::{
     lab::{
-        Point, StiffnessStudy, WorkPrecision,
+        Errors, Point, StiffnessStudy, Unit, WorkPrecision,
         chart::{Series, error, short},
         studied_methods,
     },
@@ -28,7 +28,7 @@ pub(super) fn cheapest(body: &mut String, chart: &WorkPrecision) {
                 short(point.setting.dt),
                 point.evaluations.to_string(),
                 exact(point.seconds),
-                error(point).map(exact).unwrap_or_default(),
+                error(point).map(|error| exact(error) + mark(chart, point)).unwrap_or_default(),
             ]
             .map(|cell| format!("<td>{cell}</td>"))
             .concat(),
@@ -62,15 +62,16 @@ pub(super) fn stiffness(body: &mut String, study: &StiffnessStudy) {
 
 /// Every run.
 pub(super) fn all(body: &mut String, chart: &WorkPrecision) {
+    let columns = columns(chart);
+    let heads: String = columns.iter().map(|(head, _)| format!("<th>{head}</th>")).collect();
     let _ = writeln!(
         body,
         "<details>\n<summary>All {} runs</summary>\n<table>\n<thead><tr><th>Method</th><th>Friction</th><th>dt</th>\
-         <th>Steps</th><th>Force evaluations</th><th>Seconds, shortest</th><th>Seconds, median</th><th>Largest error</th>\
-         <th>RMS error</th><th>Error of distance</th></tr></thead>\n<tbody>",
+         <th>Steps</th><th>Force evaluations</th><th>Timed runs</th><th>Seconds, shortest</th><th>Seconds, median</th>{heads}</tr></thead>\n<tbody>",
         chart.points.len()
     );
     for point in &chart.points {
-        let Point { setting, steps, evaluations, seconds, median_seconds, errors } = point;
+        let Point { setting, steps, evaluations, runs, seconds, median_seconds, errors } = point;
         let stick = match setting.stick {
             StickRule::InStages => "in stages",
             StickRule::EndOfStep => "at end",
@@ -78,13 +79,17 @@ pub(super) fn all(body: &mut String, chart: &WorkPrecision) {
         };
         let errors = match errors {
             Some(errors) => {
-                [errors.largest, errors.rms, errors.distance].map(|error| format!("<td>{}</td>", exact(error))).concat()
+                let cell = |(i, (_, of)): (usize, &Column)| {
+                    let mark = if i == 0 { mark(chart, point) } else { "" };
+                    format!("<td>{}{mark}</td>", of(errors).map(exact).unwrap_or_default())
+                };
+                columns.iter().enumerate().map(cell).collect()
             }
-            None => "<td colspan=\"3\" class=\"none\">blew up</td>".into(),
+            None => format!("<td colspan=\"{}\" class=\"none\">blew up</td>", columns.len()),
         };
         let _ = writeln!(
             body,
-            "<tr><th>{}</th><td>{stick}</td><td>{}</td><td>{steps}</td><td>{evaluations}</td><td>{}</td><td>{}</td>{errors}</tr>",
+            "<tr><th>{}</th><td>{stick}</td><td>{}</td><td>{steps}</td><td>{evaluations}</td><td>{runs}</td><td>{}</td><td>{}</td>{errors}</tr>",
             escape(setting.method.name()),
             setting.dt,
             exact(*seconds),
@@ -92,6 +97,40 @@ pub(super) fn all(body: &mut String, chart: &WorkPrecision) {
         );
     }
     body.push_str("</tbody>\n</table>\n</details>\n");
+    if chart.points.iter().any(|point| !mark(chart, point).is_empty()) {
+        let (least, sure) = (short(chart.least_known_error()), short(chart.reference_error));
+        let _ = writeln!(
+            body,
+            "<p>† Below {least}, a hundred times the {sure} by which the reference differs from what confirms it: how small this error is is not known for sure.</p>"
+        );
+    }
+}
+
+/// A kind of error: what it is called, and its value.
+type Column = (&'static str, fn(&Errors) -> Option<f64>);
+
+/// The kinds of errors that a chart has.
+fn columns(chart: &WorkPrecision) -> Vec<Column> {
+    let [largest, rms, distance] = match chart.unit {
+        Unit::Length => ["Largest error, lengths", "RMS error, body lengths", "Error of distance, lengths"],
+        Unit::PartOfSpeed => ["Largest error of speed, part", "RMS over bodies, part", "Error of distance, lengths"],
+        Unit::PartOfCell => ["Largest error, part of a cell", "RMS error, part of a cell", "Error of height, spacings"],
+    };
+    let all: [Column; 6] = [
+        (largest, |errors| Some(errors.largest)),
+        (rms, |errors| Some(errors.rms)),
+        (distance, |errors| Some(errors.distance)),
+        ("Error of the way in a cycle, lengths", |errors| errors.cycle),
+        ("Error of energy, part", |errors| errors.energy),
+        ("Deepest below ground, lengths", |errors| errors.penetration),
+    ];
+    let is_known = |(_, of): &Column| chart.points.iter().filter_map(|point| of(&point.errors?)).next().is_some();
+    all.into_iter().enumerate().filter(|(i, column)| *i < 3 || is_known(column)).map(|(_, column)| column).collect()
+}
+
+/// What stands at an error that the reference is not sure enough of.
+fn mark(chart: &WorkPrecision, point: &Point) -> &'static str {
+    if point.largest_error().is_some() && !chart.is_known(point) { " †" } else { "" }
 }
 
 /// A measured number in four digits.

@@ -30,7 +30,7 @@ pub struct StickSlip {
 pub(super) struct Track {
     /// Positions, time by time.
     pub(super) positions: Vec<DVec3>,
-    /// Velocities at the last of the times.
+    /// Velocities, time by time.
     pub(super) velocities: Vec<DVec3>,
     pub(super) events: Vec<StickSlip>,
 }
@@ -90,8 +90,8 @@ pub(super) fn follow<const D: usize>(
         }
         follower.go_to(time)?;
         track.positions.extend(vectors::<D>(body, &follower.y, 0));
+        track.velocities.extend(vectors::<D>(body, &follower.y, body.particles.len()));
     }
-    track.velocities = vectors::<D>(body, &follower.y, body.particles.len()).collect();
     track.events = follower.events;
     Ok(track)
 }

@@ -22,7 +22,10 @@ use self::{
     follow::{Broken, Grain, Track, follow},
     schemes::{Dop853, Gauss},
 };
-use super::{LabError, Problem, ProblemBody, Unit};
+use super::{
+    LabError, Problem, ProblemBody, Unit,
+    energy::{Energies, Energy},
+};
 
 pub use follow::StickSlip;
 
@@ -33,6 +36,8 @@ pub struct Reference {
     pub(super) positions: Vec<Vec<DVec3>>,
     /// Body by body, all velocities at the last of the shared times.
     pub(super) velocities: Vec<Vec<DVec3>>,
+    /// Body by body, its energies at the shared times.
+    pub(super) energies: Vec<Energies>,
     /// When masses start and stop to slide, in order.
     pub(super) events: Vec<StickSlip>,
     /// How far it is from what confirms it.
@@ -48,7 +53,13 @@ impl Reference {
     /// # Errors
     /// If the budget is a gait's speed or a shape, or a body is a strand, meets a ground, or feels isotropic or Coulomb friction, of which no smooth piece is known, or the motion of one cannot be followed.
     pub fn solve(problem: &Problem) -> Result<Self, LabError> {
-        let mut reference = Self { positions: Vec::new(), velocities: Vec::new(), events: Vec::new(), error: 0.0 };
+        let mut reference = Self {
+            positions: Vec::new(),
+            velocities: Vec::new(),
+            energies: Vec::new(),
+            events: Vec::new(),
+            error: 0.0,
+        };
         for (index, body) in problem.bodies.iter().enumerate() {
             let unknown = match body {
                 ProblemBody { ground: Some(_), .. } => Some("a body on the ground, whose contacts are not located"),
@@ -83,8 +94,10 @@ impl Reference {
             })?;
             reference.error = reference.error.max(error);
             reference.events.extend(track.events.iter().map(|&event| StickSlip { body: index, ..event }));
+            let count = body.particles.len();
+            reference.energies.push(energies(body, &track, &problem.times()));
+            reference.velocities.push(track.velocities[track.velocities.len().saturating_sub(count)..].to_vec());
             reference.positions.push(track.positions);
-            reference.velocities.push(track.velocities);
         }
         reference.events.sort_by(|a, b| a.time.total_cmp(&b.time));
         Ok(reference)
@@ -110,6 +123,22 @@ impl Reference {
     pub fn error(&self) -> f64 {
         self.error
     }
+}
+
+/// The energies of a body along its track.
+fn energies(body: &ProblemBody, track: &Track, times: &[f64]) -> Energies {
+    let (mut energies, mut particles) = (Energies::default(), body.particles.clone());
+    let count = particles.len();
+    for (sample, &time) in times.iter().enumerate() {
+        let (positions, velocities) = particles.state_columns_mut();
+        for (columns, vectors) in [(positions, &track.positions), (velocities, &track.velocities)] {
+            for (i, vector) in vectors[sample * count..][..count].iter().enumerate() {
+                (0..3).for_each(|axis| columns[axis][i] = vector[axis]);
+            }
+        }
+        energies.push(Energy::of(body, &particles, time));
+    }
+    energies
 }
 
 /// One body by both schemes: the track of the first, and how far the other is from it.

@@ -17,7 +17,7 @@ const MOST_WORK: f64 = 1e8;
 /// over the step and 0.9 and 0.8 of it is within the budget. A run costs the less the larger its step is, so this one is the cheapest; it is timed.
 ///
 /// A run that takes longer than anybody waits for at so many factors is not tried.
-pub(super) fn cheapest_run(problem: &Problem, truth: &Truth, method: Method, options: &SweepOptions) -> Option<Point> {
+pub fn cheapest_run(problem: &Problem, truth: &Truth, method: Method, options: &SweepOptions) -> Option<Point> {
     let stick = StickRule::InStages;
     let settings = steps(problem, method, stick).into_iter().map(|dt| Setting { method, stick, dt });
     let mut short = settings.take_while(|setting| work(problem, method, setting.dt) <= MOST_WORK);

@@ -17,6 +17,7 @@ use crate::{
 };
 
 pub use crossing::{Crossing, crossing, crossing_of};
+pub use find::cheapest_run;
 pub use record::{StiffRun, StiffScene, StiffnessStudy};
 pub use table::{STIFFNESS_COLUMNS, stiffness_csv};
 
@@ -56,7 +57,7 @@ fn stiffen(springs: &mut Springs, factor: f64) -> Result<(), crate::body::BodyEr
     Ok(())
 }
 
-/// Finds the cheapest run of every method that is good enough at every factor. Where the reference cannot be had any more, the study ends and says why.
+/// Finds the cheapest run of every method that is good enough at every factor; see [`cheapest_run`]. Where the reference cannot be had any more, the study ends and says why.
 /// `progress` hears how many of how many searches are done and what comes next.
 ///
 /// # Errors
@@ -66,6 +67,25 @@ pub fn stiffness_study(
     options: &SweepOptions,
     progress: &mut dyn FnMut(usize, usize, &str),
 ) -> Result<StiffnessStudy, LabError> {
+    let find = &mut |_, stiff: &Problem, truth: &Truth, method| {
+        Ok(StiffRun { method, run: cheapest_run(stiff, truth, method, options) })
+    };
+    resumed_stiffness_study(problem, options, find, progress)
+}
+
+/// Finds the run of a method, given the factor, the problem with that and its truth.
+pub type FindRun<'a, E> = dyn FnMut(f64, &Problem, &Truth, Method) -> Result<StiffRun, E> + 'a;
+
+/// As [`stiffness_study`], with runs by `find`, which may know some of them already.
+///
+/// # Errors
+/// If the problem as it is has no reference, and the first one of `find`.
+pub fn resumed_stiffness_study<E: From<LabError>>(
+    problem: &Problem,
+    options: &SweepOptions,
+    find: &mut FindRun<'_, E>,
+    progress: &mut dyn FnMut(usize, usize, &str),
+) -> Result<StiffnessStudy, E> {
     let factors = factors(options.quick);
     let methods: Vec<_> = studied_methods().collect();
     let all = factors.len() * methods.len();
@@ -96,7 +116,7 @@ pub fn stiffness_study(
         });
         let (stiff, truth, way) = match solved {
             Ok(solved) => solved,
-            Err(error) if i == 0 => return Err(error),
+            Err(error) if i == 0 => return Err(error.into()),
             Err(error) => {
                 study.ended = Some(error.to_string());
                 break;
@@ -104,10 +124,9 @@ pub fn stiffness_study(
         };
         let runs = methods.iter().enumerate().map(|(j, &method)| {
             progress(done + j, all, &format!("{} at {factor} times the stiffness", method.name()));
-            let run = find::cheapest_run(&stiff, &truth, method, options);
-            StiffRun { method, run }
+            find(factor, &stiff, &truth, method)
         });
-        let runs = runs.collect::<Vec<_>>();
+        let runs = runs.collect::<Result<Vec<_>, E>>()?;
         study.scenes.push(StiffScene { factor, way, reference_error: truth.error(), runs });
     }
     progress(all, all, "done");
