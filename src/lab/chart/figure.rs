@@ -25,8 +25,9 @@ pub(super) const SMALL: f64 = 12.5;
 pub(super) const BLACK: Color = [0; 3];
 pub(super) const GREY: Color = [0x66; 3];
 pub(super) const BUDGET: Color = [0xdf, 0xef, 0xe6];
-/// The ground of errors that are not known.
-const UNKNOWN: Color = [0xe4; 3];
+/// What lies over errors that are not known.
+pub(super) const UNKNOWN: Color = [0x9a; 3];
+pub(super) const UNKNOWN_ALPHA: f64 = 0.3;
 pub(super) const BUDGET_EDGE: Color = [0x3d, 0x7a, 0x5c];
 pub(super) const GUIDE: Color = [0x9a; 3];
 pub(super) const STAR_FILL: Color = [0xf0, 0xe4, 0x42];
@@ -39,7 +40,7 @@ pub(super) fn draw(picture: &mut Picture, chart: &WorkPrecision, plot: &Plot, pa
         picture.area(Rect { top: budget.y, ..panel.frame }.corners(), BUDGET, 1.0);
     }
     if let Some(top) = words::unknown(chart, panel) {
-        picture.area(Rect { top, ..panel.frame }.corners(), UNKNOWN, 1.0);
+        picture.area(Rect { top, ..panel.frame }.corners(), UNKNOWN, UNKNOWN_ALPHA);
     }
     grid(picture, chart.unit, plot, panel, first);
     strip(picture, plot, panel, first);
@@ -62,12 +63,19 @@ pub(super) fn draw(picture: &mut Picture, chart: &WorkPrecision, plot: &Plot, pa
         placer.take_line(&places);
         places.iter().for_each(|&place| placer.take(Rect::around(place, MARKER + 1.0)));
     }
-    highlights(picture, panel, &mut placer);
     for (series, places) in series() {
         if panel.cost == Cost::Seconds {
             medians(picture, panel, &mut placer, series, &places);
         }
         places.iter().for_each(|&place| series.look().mark(picture, place, MARKER));
+    }
+    // Over all others, and under its own mark.
+    highlights(picture, panel, &mut placer);
+    let own = |series: &&Series| (series.method, series.stick) == (chart.setting.method, chart.setting.stick);
+    if let (Some(place), Some(series)) = (panel.setting, plot.series.iter().find(own))
+        && places(panel, series).contains(&place)
+    {
+        series.look().mark(picture, place, MARKER);
     }
     words::meanings(picture, panel, &mut placer, &levels);
     words::steps(picture, plot, panel, &mut placer);

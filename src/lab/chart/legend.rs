@@ -39,7 +39,7 @@ pub(super) fn caption(chart: &WorkPrecision) -> Vec<String> {
     let unknown = match good().filter(|point| !chart.is_known(point)).count() {
         0 => String::new(),
         count => format!(
-            " {count} of {} errors are below a hundred times that, on grey: how small they are is not known for sure.",
+            " {count} of {} errors are below a hundred times that, on grey: they are not known to a hundredth of themselves.",
             good().count()
         ),
     };
@@ -168,6 +168,13 @@ fn signs(chart: &WorkPrecision, plot: &Plot) -> Vec<(String, Sign)> {
         ),
     ];
     signs.extend(others);
+    if chart.points.iter().any(|point| point.largest_error().is_some() && !chart.is_known(point)) {
+        let grey: Sign = Box::new(move |picture, y| {
+            let zone = Rect { left: LEFT, top: y - 6.0, right: LEFT + SAMPLE, bottom: y + 6.0 };
+            picture.area(zone.corners(), figure::UNKNOWN, figure::UNKNOWN_ALPHA);
+        });
+        signs.push(("not known to a hundredth".into(), grey));
+    }
     let real_time = chart.real_time;
     if seconds.real_time.is_some() {
         let line: Sign =

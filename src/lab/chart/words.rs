@@ -24,8 +24,7 @@ pub(super) struct Level {
 pub(super) fn levels(chart: &WorkPrecision, panel: &Panel) -> Vec<Level> {
     let budget = (chart.budget, "good enough: error below", BUDGET_EDGE, true);
     let reference = (chart.reference_error, "the reference itself is sure to", GREY, false);
-    let known =
-        (chart.least_known_error(), "a hundred times as much: smaller errors are not known, below", GREY, false);
+    let known = (chart.least_known_error(), "grey: errors not known to a hundredth, below", GREY, false);
     let shown = [budget, reference, known].into_iter().filter(|(error, ..)| panel.y.shows(*error));
     shown
         .map(|(error, text, color, band)| {

@@ -101,7 +101,7 @@ pub(super) fn all(body: &mut String, chart: &WorkPrecision) {
         let (least, sure) = (short(chart.least_known_error()), short(chart.reference_error));
         let _ = writeln!(
             body,
-            "<p>† Below {least}, a hundred times the {sure} by which the reference differs from what confirms it: how small this error is is not known for sure.</p>"
+            "<p>† Below {least}, a hundred times the {sure} by which the reference differs from what confirms it: not known to a hundredth of itself.</p>"
         );
     }
 }
