@@ -22,7 +22,7 @@ pub struct Particle {
     pub position: DVec3,
     /// Its velocity, in lengths a unit of time.
     pub velocity: DVec3,
-    /// Its mass, above zero; of a pinned particle it may be zero.
+    /// Its mass, above zero and large enough for its inverse to be finite; of a pinned particle it may be zero.
     pub mass: f64,
     /// A pinned particle never moves, whatever pulls at it; its inverse mass counts as zero.
     pub pinned: bool,
@@ -43,6 +43,12 @@ impl Particle {
         // A pinned particle moves as little without a mass.
         let requirement = if self.pinned { Requirement::NonNegative } else { Requirement::Positive };
         check(self.mass, requirement, || format!("particles[{index}].mass"))?;
+        if !self.pinned && !self.mass.recip().is_finite() {
+            return Err(BodyError::Inconsistent {
+                path: format!("particles[{index}].mass"),
+                problem: format!("{:e} is so small that its inverse is infinite; give a larger mass", self.mass),
+            });
+        }
         if self.pinned && self.velocity != DVec3::ZERO {
             return Err(BodyError::Inconsistent {
                 path: format!("particles[{index}].velocity"),
@@ -70,7 +76,7 @@ impl Particles {
     /// Builds the particles of a body.
     ///
     /// # Errors
-    /// If there is none, a number is not finite, a mass is not above zero, or a pinned particle has a velocity.
+    /// If there is none, a number is not finite, a mass is not above zero or its inverse is infinite, or a pinned particle has a velocity.
     pub fn new(particles: impl IntoIterator<Item = Particle>) -> Result<Self, BodyError> {
         let mut all = Self::default();
         for (index, particle) in particles.into_iter().enumerate() {

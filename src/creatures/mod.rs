@@ -26,6 +26,7 @@ pub(crate) mod numbers;
 mod parse;
 mod six;
 mod strand;
+mod wording;
 
 pub use blueprint::{Coulomb, Creature, Friction, Plan, RawBody, RawMuscle, RawParticle, RawSpring};
 pub use build::{Body, Pose};

@@ -3,7 +3,10 @@
 use ron::{Options, error::SpannedError, extensions::Extensions};
 use serde::{Deserialize, Deserializer, de::DeserializeOwned};
 
-use super::FileError;
+use super::{
+    FileError,
+    wording::{offset, problem},
+};
 
 /// How files are read and written: `Some(x)` may be written `x`, and `Raw(particles: …)` needs no second pair of brackets.
 pub(crate) fn options() -> Options {
@@ -50,7 +53,7 @@ fn read<T: DeserializeOwned>(text: &str, file: &str) -> Result<T, FileError> {
         // A value is where it begins; what should not be there is where the reader stopped.
         let place = if error.code == ron::Error::TrailingCharacters { error.span.end } else { error.span.start };
         let (line, column) = (place.line, place.col);
-        let problem = wanted_variants::<T>(text, &error).unwrap_or_else(|| problem(&error.code));
+        let problem = wanted_variants::<T>(text, &error).unwrap_or_else(|| problem(text, place, &error.code));
         FileError::Value { file: file.into(), line, column, field: field_name(&field), problem }
     })
 }
@@ -73,11 +76,7 @@ fn wanted_variants<T: DeserializeOwned>(text: &str, error: &SpannedError) -> Opt
     if !matches!(error.code, ron::Error::ExpectedIdentifier | ron::Error::SuggestRawIdentifier(_)) {
         return None;
     }
-    let lines = text.split_inclusive('\n').take(error.span.start.line - 1);
-    let before: usize = lines.map(str::len).sum();
-    let line = text.get(before..)?;
-    let (column, _) = line.char_indices().nth(error.span.start.col - 1)?;
-    let (ahead, behind) = text.split_at_checked(before + column)?;
+    let (ahead, behind) = text.split_at(offset(text, error.span.start));
     let ron::Error::NoSuchEnumVariant { expected, .. } =
         deserialize::<T>(&[ahead, NOBODY, behind].concat()).err()?.error.code
     else {
@@ -105,12 +104,4 @@ fn field_name(path: &str) -> String {
     .find_map(|kind| path.strip_prefix(kind))
     .unwrap_or(path);
     if path.is_empty() { String::new() } else { format!("{path}: ") }
-}
-
-fn problem(error: &ron::Error) -> String {
-    match error {
-        ron::Error::MissingStructField { field, .. } => format!("the field `{field}` is missing; it has no default"),
-        ron::Error::DuplicateStructField { field, .. } => format!("the field `{field}` is given twice; give it once"),
-        other => other.to_string(),
-    }
 }

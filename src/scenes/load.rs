@@ -167,10 +167,14 @@ pub fn load_creature(name: &str) -> Result<LoadedScene, FileError> {
         set: Default::default(),
     };
     let roads = Roads::read(&file, &source)?;
+    let name = &file.creatures[0].name;
+    let renamed = (*name != stem).then(|| {
+        format!("{source}: `{}` cannot be a name, so its parameter paths begin with `{name}`", stem.escape_debug())
+    });
     check(LoadedScene {
         file,
         source: source.clone(),
-        warnings: Vec::new(),
+        warnings: renamed.into_iter().collect(),
         creatures: vec![(source, creature)],
         roads,
     })
@@ -226,7 +230,7 @@ fn check(mut scene: LoadedScene) -> Result<LoadedScene, FileError> {
         ));
     }
     let mut warned = BTreeSet::new();
-    let (mut warnings, mut ill_timed) = (Vec::new(), false);
+    let (mut warnings, mut ill_timed) = (core::mem::take(&mut scene.warnings), false);
     for (i, body) in scene.bodies().enumerate() {
         let body = body?;
         if let Some(ground) = scene.file.ground.as_ref().filter(|_| body.six.is_none()) {

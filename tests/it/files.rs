@@ -17,7 +17,8 @@ use wriggle::{
     scenes::{self, Budget, Camera, Props, StepSize},
 };
 
-const RAW: &str = r#"Creature(version: 1,
+/// The canonical creature: the garden worm whose motion is known to twelve digits.
+pub const RAW: &str = r#"Creature(version: 1,
   body: Raw(
     particles: [(position: (0, 0, 0), mass: 1), (position: (1, 0, 0), mass: 1), (position: (2, 0, 0), mass: 1)],  // velocity: (0, 0, 0), pinned: false
     springs: [(ends: (0, 1), stiffness: 1.5, damping: 0.9, rest_length: 1, muscle: (wave: Sine, amplitude: 0.25, period: 2, phase: 0, ramp: 0)),
@@ -175,7 +176,11 @@ fn bad_values_are_reported_with_line_column_field_and_what_is_right() {
         ("ends: (0, 1)", "ends: (0, -1)", &[":4:", "springs[0].ends"]),
         ("ends: (0, 1)", "ends: (0, 1, 2)", &[":4:", "springs[0].ends"]),
         ("body: Raw", "body: Snail", &[":2:", "body", "Snail", "Raw", "GardenWorm"]),
-        ("friction: (ratchet: true", "friction: (ratchet: 1", &[":7:", "friction", "boolean"]),
+        (
+            "friction: (ratchet: true",
+            "friction: (ratchet: 1",
+            &[":7:", "friction.ratchet: `1` is not", "true or false"],
+        ),
     ] {
         assert!(RAW.contains(good));
         let problem = creature_problem(RAW.replacen(good, bad, 1));
@@ -210,6 +215,108 @@ fn bad_values_of_a_scene_are_reported_too() {
 }
 
 #[test]
+fn what_would_be_right_is_said_of_values_of_another_form() {
+    for (good, bad, says) in [
+        (
+            "stiffness: 1.5",
+            "stiffness: 1,5",
+            "springs[0]: `1,5` is no number; write decimals with a point, not a comma: 1.5",
+        ),
+        ("period: 2", "period: -2,25", "springs[0].muscle: `-2,25` is no number; write decimals"),
+        ("drag: 0", "drag: 0,5", "friction: `0,5` is no number; write decimals with a point, not a comma: 0.5"),
+        ("grip: 0)", "grip: 0), gravity: 0,5", ":7:70: `0,5` is no number"),
+        ("[0, 1, 2]", "[0, -1]", ":6:17: spine[1]: -1 is not allowed; give a whole number, 0 or more"),
+        ("[0, 1, 2]", "[0,1.5]", "spine: 1.5 is no whole number; give one without point and exponent"),
+        ("[0, 1, 2]", "[0,2e0]", "spine: 2e0 is no whole number"),
+        ("[0, 1, 2]", "[0 1]", ":6:15: spine: a comma or a closing bracket belongs here, and not `1`"),
+        ("[0, 1, 2]", "[0; 1]", "spine: a comma or a closing bracket belongs here, and not `;`"),
+        ("[0, 1, 2]", "[0, \"B\"]", "spine[1]: `\"B\"` is not allowed; give a whole number"),
+        ("[0, 1, 2]", "(0, 1, 2)", "spine: `(` is not allowed; give a list in square brackets"),
+        (
+            "ends: (0, 1)",
+            "ends: (0, 99999999999)",
+            "ends[1]: 99999999999 is too large; give a whole number from 0 to 4294967295",
+        ),
+        ("ends: (0, 1)", "ends: (0, 1, 2)", "springs[0].ends: give 2 values; here is one more, `2`"),
+        ("ends: (0, 1)", "ends: (0)", "springs[0].ends: give 2 values; here is 1"),
+        (
+            "ends: (0, 1)",
+            "ends: [0, 1]",
+            "springs[0].ends: `[` is not allowed; give what belongs here in round brackets",
+        ),
+        ("(1, 0, 0)", "(1, 0, 0, 0)", "particles[1].position: give 3 values; here is one more, `0`\n"),
+        ("(1, 0, 0)", "(1,5, 0, 0)", "here is one more, `0` (decimals are written with a point, not a comma)"),
+        ("(1, 0, 0)", "(1, 0)", "particles[1].position: give 3 values; here are 2"),
+        ("(1, 0, 0)", "(1, 0 0)", "position: a comma or a closing bracket belongs here, and not `0`"),
+        ("mass: 1)", "mass: one)", "particles[0].mass: `one` is not allowed; give a number"),
+        ("mass: 1)", "mass: 1.2.3)", "particles[0].mass: `1.2.3` is not allowed; give a number"),
+        ("mass: 1)", "mass: )", "particles[0].mass: `)` is not allowed; give a number"),
+        ("mass: 1)", "mass: 1kg)", "particles[0]: a comma or a closing bracket belongs here, and not `kg`"),
+        ("mass: 1)", "mass = 1)", "particles[0]: a name and its value have a colon between them"),
+        (
+            "mass: 1)",
+            "\"mass\": 1)",
+            "particles[0]: `\"mass\"` is not allowed; give the name of a field, without quotes",
+        ),
+        ("version: 1", "version: 1.0", ":1:20: 1.0 is no whole number"),
+        ("version: 1", "version: \"1\"", "version: `\"1\"` is not allowed; give a whole number"),
+        ("grip: 0)", "grip: 0), damping: Rate(0,5)", "damping.Rate: give 1 value; here is one more, `5` (decimals"),
+        ("grip: 0)", "grip: 0), road: 3", "road: `3` is not allowed; give a text in quotes"),
+        (
+            "(ratchet: true, drag: 0, grip: 0)",
+            "none",
+            "friction: `none` is not allowed; give what belongs here in round",
+        ),
+        ("grip: 0))", "grip: 0)", "the file ends here, and a bracket is still open"),
+        (
+            "Creature(",
+            "Creatur(",
+            ":1:1: `Creatur` is not allowed; a creature file begins like `Creature(version: 1, body: …)`",
+        ),
+    ] {
+        assert!(RAW.contains(good), "{good}");
+        // The end of the message can be asked for, too.
+        let problem = creature_problem(RAW.replacen(good, bad, 1)) + "\n";
+        assert!(problem.contains(says), "{bad}: `{says}` is missing in: {problem}");
+    }
+    let jelly = "Creature(version: 1, body: Jelly(size: (2.5, 5, 5), neighbours: (edges: (stiffness: 9))))";
+    assert_says(&creature_problem(jelly), &["size: 2.5 is no whole number"]);
+    for (good, bad, says) in [
+        ("seed: 7", "seed: -3", "seed: -3 is not allowed; give a whole number, 0 or more"),
+        ("seed: 7", "seed: 99999999999999999999", "99999999999999999999 is too large; give a smaller whole number"),
+        ("dt: 0.0005", "substeps: 2.5", "2.5 is no whole number"),
+        ("gravity: 0", "gravity: 9,81", "`9,81` is no number; write decimals with a point, not a comma: 9.81"),
+    ] {
+        assert!(SCENE_TEXT.contains(good), "{good}");
+        assert_says(&scene_problem(SCENE_TEXT.replacen(good, bad, 1)), &[says]);
+    }
+}
+
+#[test]
+fn a_file_of_another_kind_is_told_how_its_name_ends() {
+    let (_folder, path) = file("plain.ron", RAW);
+    let problem = scenes::load(name(&path)).unwrap_err().to_string();
+    let says = "plain.ron:1:1: holds a creature, where a scene is looked for; the name of a creature file ends in .creature.ron";
+    assert_says(&problem, &[says]);
+    assert_says(
+        &creature_problem(SCENE_TEXT),
+        &["holds a scene, where a creature is looked for", " ends in .scene.ron"],
+    );
+}
+
+#[test]
+fn a_creature_whose_name_cannot_begin_a_path_is_warned_of() {
+    for (stem, becomes) in [("clock", "clock-"), ("a,b", "a-b")] {
+        let (_folder, path) = file(&format!("{stem}.creature.ron"), RAW);
+        let scene = scenes::load(name(&path)).unwrap();
+        assert_eq!(scene.file.creatures[0].name, becomes);
+        assert_eq!(scene.warnings.len(), 1, "{:?}", scene.warnings);
+        let says = format!("`{stem}` cannot be a name, so its parameter paths begin with `{becomes}`");
+        assert_says(&scene.warnings[0], &[&says, name(&path)]);
+    }
+}
+
+#[test]
 fn places_that_contradict_each_other_are_named() {
     for (good, bad, words) in [
         ("ends: (1, 2)", "ends: (1, 3)", &["springs[1].ends: there is no particle 3; this body has 3"][..]),
@@ -219,6 +326,11 @@ fn places_that_contradict_each_other_are_named() {
         ("[0, 1, 2])", "[])", &["friction: works along a spine", "give `spine:"]),
         // Only a pinned particle may have none.
         ("mass: 1)", "mass: 0)", &["particles[0].mass: 0 is not allowed", "above 0"]),
+        (
+            "mass: 1)",
+            "mass: 1e-320)",
+            &["particles[0].mass: 1e-320 is so small that its inverse is infinite", "larger"],
+        ),
         ("mass: 1)", "velocity: (1, 0, 0), pinned: true)", &["particles[0].velocity: a pinned particle never moves"]),
     ] {
         assert!(RAW.contains(good));
