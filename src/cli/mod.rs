@@ -22,7 +22,7 @@ mod play;
 mod progress;
 mod report;
 mod run;
-#[cfg(feature = "window")]
+#[cfg_attr(not(feature = "window"), path = "no_shot.rs")]
 mod shot;
 mod values;
 
@@ -45,8 +45,8 @@ enum Command {
     Play(play::PlayArguments),
     /// List scenes, creatures and methods, or the parameters of a scene
     List(list::ListArguments),
-    /// Draw a scene into a picture, without a window
-    #[cfg(feature = "window")]
+    #[cfg_attr(feature = "window", doc = "Draw a scene into a picture, without a window")]
+    #[cfg_attr(not(feature = "window"), doc = "Draw a scene into a picture (not in this build: it has no renderer)")]
     Shot(shot::ShotArguments),
     /// Run a scene or a creature without drawing it
     Run(run::RunArguments),
@@ -117,7 +117,6 @@ pub fn main() -> ExitCode {
         None => play::play(&arguments.play),
         Some(Command::Play(arguments)) => play::play(&arguments),
         Some(Command::List(arguments)) => list::list(&arguments),
-        #[cfg(feature = "window")]
         Some(Command::Shot(arguments)) => shot::shot(&arguments),
         Some(Command::Run(arguments)) => run::run(&arguments),
         Some(Command::Choose(arguments)) => choose::choose(&arguments),

@@ -71,8 +71,8 @@ pub(super) fn run(arguments: &RunArguments) -> Result<Outcome, CliError> {
             "--record {place} would put a table where scenes and creatures are; give a name that ends in .csv"
         )));
     }
-    if arguments.dt.is_some() && arguments.set.iter().any(|(path, _)| path.starts_with("clock.")) {
-        return Err(CliError::Usage("--dt and --set clock.… would both give the step; give one of them".into()));
+    if arguments.dt.is_some() && arguments.set.iter().any(|(path, _)| path == "clock.dt") {
+        return Err(CliError::Usage("--dt and --set clock.dt would both give the step; give one of them".into()));
     }
     let mut scene = scenes::load(&arguments.scene)?;
     if let Some(method) = arguments.method {

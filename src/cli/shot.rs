@@ -69,12 +69,10 @@ fn draw(scene: scenes::LoadedScene, steps: u64, arguments: &ShotArguments) -> Re
     clock.leap(0);
     clock.set_steps_per_tick(steps);
     world.run_schedule(Ticks);
-    let frozen: Vec<_> = world.resource_mut::<Messages<BodyFrozen>>().drain().collect();
+    // The log has told of it.
+    let has_frozen = !world.resource::<Messages<BodyFrozen>>().is_empty();
     shot.picture()?.save(&arguments.out)?;
-    for BodyFrozen { text, .. } in &frozen {
-        eprintln!("{text}");
-    }
-    Ok(if frozen.is_empty() { Outcome::Done } else { Outcome::Frozen })
+    Ok(if has_frozen { Outcome::Frozen } else { Outcome::Done })
 }
 
 /// Finds out before a picture is drawn whether it can be written.

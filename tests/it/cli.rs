@@ -61,6 +61,9 @@ fn flags_change_the_run() {
     assert_eq!((other["method"].as_str(), other["steps"].as_u64()), (Some("RungeKutta4"), Some(300)));
     assert_eq!(other["force_evaluations"].as_u64(), Some(1200));
     assert_eq!(json(&["run", "document", "--dt", "0.05"])["time"].as_f64(), Some(60.0));
+    // The time scale is how fast it is watched, and no step.
+    let watched = json(&["run", "document", "--for", "3", "--dt", "0.05", "--set", "clock.time_scale=5"]);
+    assert_eq!(watched["hash"], json(&["run", "document", "--for", "3", "--dt", "0.05"])["hash"]);
     assert_eq!(json(&["run", "document", "--for", "0"])["steps"].as_u64(), Some(0));
 }
 
@@ -121,7 +124,11 @@ fn bad_input_exits_with_2_and_says_what_is_right() {
         (&["run", "document", "--for", "1", "--record", "/nowhere/r.csv"], &["/nowhere/r.csv"]),
         (&["run", "document", "--threads", "0"], &["--threads"]),
         (&["run", "document", "--threads", "-1"], &["--threads", "-1 is not in 1..=1024"]),
-        (&["run", "document", "--dt", "0.1", "--set", "clock.dt=0.2"], &["--dt and --set clock.", "give one of them"]),
+        (
+            &["run", "document", "--dt", "0.1", "--set", "clock.dt=0.2"],
+            &["--dt and --set clock.dt", "give one of them"],
+        ),
+        (&["run", "document", "--set", "worm.particles.mass=1e-320"], &["particles[0].mass: 1e-320", "larger mass"]),
         (&["run", "snake", "--method", "ExactFlow"], &["`snake` cannot", "not on an axis", "give another method"]),
         (&["run", "document", "--record", "my.creature.ron"], &["my.creature.ron", "ends in .csv"]),
         (&["run", "gardn"], &["no scene `gardn`", "did you mean garden?", "assets/scenes/gardn.scene.ron"]),
@@ -149,6 +156,19 @@ fn a_bad_file_is_reported_with_its_place() {
     assert_eq!(output.status.code(), Some(2));
     assert!(stderr(&output).starts_with("error: bad.creature.ron:2:"), "{}", stderr(&output));
     assert!(stderr(&output).contains("mass: 0 is not allowed; give a finite number above 0"), "{}", stderr(&output));
+}
+
+#[cfg(not(feature = "window"))]
+#[test]
+fn a_build_that_cannot_draw_says_so() {
+    for arguments in [&["shot", "garden", "--at", "3", "--out", "a.png"][..], &["shot"]] {
+        let output = wriggle(arguments);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        let said = stderr(&output);
+        for word in ["no window and no renderer", "the feature `window`"] {
+            assert!(said.contains(word), "{arguments:?}: `{word}` is missing in: {said}");
+        }
+    }
 }
 
 #[test]
