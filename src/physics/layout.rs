@@ -7,8 +7,8 @@ use core::ops::Range;
 use bevy::ecs::{archetype::ArchetypeId, prelude::*};
 
 use crate::{
-    body::ParticleId,
-    mechanics::{Advance, Lanes, Model, Real, State, Timeline},
+    body::{ParticleId, SpringId},
+    mechanics::{Advance, BodyParts, Lanes, Model, Real, State, Timeline},
 };
 
 use super::{
@@ -122,7 +122,10 @@ fn retrace<const D: usize>(item: &mut Item<'_>, timeline: Timeline, steps: Range
             (0, format!("{} did not converge", method.name()))
         } else if let Some(explosion) = model.explosion(&state, 0) {
             let reason = match explosion.spring {
-                Some(spring) => format!("spring {spring} is longer than ten rest lengths"),
+                Some(spring) => {
+                    let before = model.explosion(&good, 0);
+                    too_long(&item.body(), spring, before.is_some_and(|before| before.spring == Some(spring)))
+                }
                 None => "it is not finite".into(),
             };
             (explosion.particle, reason)
@@ -137,4 +140,12 @@ fn retrace<const D: usize>(item: &mut Item<'_>, timeline: Timeline, steps: Range
     }
     state.write_lane(0, item.particles.bypass_change_detection());
     item.take_torn(&model, 0);
+}
+
+/// What is said of a spring that is too long, and maybe was so before the step.
+fn too_long(body: &BodyParts<'_>, spring: usize, was: bool) -> String {
+    // Springs are counted in u32.
+    let rest = body.springs.get(SpringId(spring as u32)).map_or(0.0, |spring| spring.rest_length);
+    let why = if was { "; it was so before, whatever dt is: its rest length is too small" } else { "" };
+    format!("spring {spring} is longer than ten rest lengths of {rest}{why}")
 }

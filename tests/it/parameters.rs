@@ -3,6 +3,7 @@
 use bevy::prelude::*;
 use wriggle::{
     body::{Gravity, Muscles, ParticleId, Particles, SpineFriction, SpringId, Springs, TravelingWaves},
+    cli::Headless,
     mechanics::integrators::Method,
     physics::Clock,
     scenes::{
@@ -158,6 +159,19 @@ fn only_what_really_changes_is_marked_as_changed() {
     parameters::set_method(&mut world, Method::RungeKutta4);
     assert_eq!(changed(&mut world), ([false, true, false, false, true], false));
     assert_eq!(parameters::method(&mut world), Method::RungeKutta4);
+}
+
+#[test]
+fn the_ends_of_no_slider_tear_the_garden_worm_out_of_its_pose() {
+    let all = parameters::list(&mut world("garden"));
+    for Parameter { path, range, .. } in all.into_iter().filter(|parameter| parameter.kind == Kind::Number) {
+        for value in [*range.start(), *range.end()] {
+            let mut run = Headless::new(scenes::load("garden").unwrap(), None).unwrap();
+            parameters::set(run.world_mut(), &path, value).unwrap();
+            let said = run.step(1);
+            assert!(!run.has_frozen(), "{path} = {value}: {said:?}");
+        }
+    }
 }
 
 #[test]

@@ -68,6 +68,29 @@ fn an_exploding_worm_is_frozen_and_its_neighbour_is_not() {
 }
 
 #[test]
+fn a_rest_length_that_is_too_small_for_the_pose_is_said_to_be_that() {
+    let mut worm = Worm::GARDEN.body();
+    let spring = |i| Spring { rest_length: 0.1, ..worm.springs.get(SpringId(i)).unwrap() };
+    worm.springs = Springs::new([spring(0), spring(1)], &worm.particles).unwrap();
+    let mut app = stepping_app(0.01, 10);
+    let body = app.world_mut().spawn(worm).id();
+    app.update();
+    let frozen = app.world().get::<Frozen>(body).unwrap();
+    assert_eq!(frozen.step, 1);
+    assert!(
+        frozen.reason.contains("ten rest lengths of 0.1;") && frozen.reason.ends_with("its rest length is too small")
+    );
+    let text = &messages(&mut app)[0].text;
+    assert!(text.contains("whatever dt is"), "{text}");
+    // What explodes by its step is not said to have begun so.
+    let mut app = stepping_app(0.05, 500);
+    let body = app.world_mut().spawn(Worm { stiffness: 1e6, ..Worm::GARDEN }.body()).id();
+    app.update();
+    let reason = &app.world().get::<Frozen>(body).unwrap().reason;
+    assert!(reason.ends_with("is longer than ten rest lengths of 1"), "{reason}");
+}
+
+#[test]
 fn what_a_frozen_body_cost_does_not_depend_on_the_ticks() {
     let cost = |steps_a_tick: u64| {
         let mut app = stepping_app(0.05, steps_a_tick);

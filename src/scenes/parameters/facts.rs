@@ -28,7 +28,8 @@ impl Quantity {
             Self::Stiffness => (SPRINGS, "stiffness", NonNegative, (0.0, 10.0), "force/length", "spring stiffness k"),
             Self::Damping => (SPRINGS, "damping", NonNegative, (0.0, 10.0), "force·time/length", "spring damping D"),
             Self::RestLength => {
-                (SPRINGS, "rest_length", Positive, (0.1, 4.0), "length", "rest length L without its muscle")
+                // Ten times the least is longer than what springs usually hold apart: nothing is torn out of its pose by a slider.
+                (SPRINGS, "rest_length", Positive, (0.2, 4.0), "length", "rest length L without its muscle")
             }
             Self::Mass => (Group::Particles, "mass", Positive, (0.1, 10.0), "mass", "mass of a particle"),
             Self::Amplitude => (
