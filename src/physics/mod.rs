@@ -138,7 +138,8 @@ impl Plugin for PhysicsPlugin {
         if ticks_are_fixed {
             app.add_systems(RunFixedMainLoop, sync.in_set(RunFixedMainLoopSystems::AfterFixedMainLoop));
         } else {
-            app.add_systems(PostUpdate, sync);
+            // Else followers would be drawn where they were a frame before.
+            app.add_systems(PostUpdate, sync.before(TransformSystems::Propagate));
         }
     }
 }

@@ -4,7 +4,7 @@ use bevy::{math::DVec3, prelude::*, time::TimeUpdateStrategy};
 use core::time::Duration;
 use wriggle::{
     body::{Particle, ParticleId, Particles, Springs},
-    physics::{Clock, FollowParticle, Shown, ShownLap},
+    physics::{Clock, FollowParticle, PhysicsPlugin, Shown, ShownLap},
 };
 
 use crate::support::ticking_app;
@@ -36,6 +36,21 @@ fn followers_move_evenly_between_ticks() {
         assert!((moved - 0.005).abs() < 0.0008, "moved {moved} in a frame of 0.005");
         assert_eq!((now.y, now.z), (1.0, 0.0));
         last = now;
+    }
+}
+
+#[test]
+fn followers_are_drawn_where_they_are_whatever_schedule_the_physics_has() {
+    let mut app = App::new();
+    app.add_plugins((MinimalPlugins, TransformPlugin, PhysicsPlugin::new(Update)));
+    let particle = Particle { velocity: DVec3::X, ..Particle::at(DVec3::Y) };
+    let body = app.world_mut().spawn((Particles::new([particle]).unwrap(), Springs::default())).id();
+    app.world_mut().resource_mut::<Clock>().set_steps_per_tick(5);
+    let follower = app.world_mut().spawn(FollowParticle { body, particle: ParticleId(0) }).id();
+    for _ in 0..20 {
+        app.update();
+        let moved = app.world().get::<Particles>(body).unwrap().center().as_vec3();
+        assert_eq!(app.world().get::<GlobalTransform>(follower).unwrap().translation(), moved);
     }
 }
 
