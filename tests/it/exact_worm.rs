@@ -1,17 +1,49 @@
 //! The worm whose motion two independent methods of event location agree on to twelve digits: rest lengths 1 + ¼ sin πt and
 //! 1 + ¼ sin(πt − π/2), k 1.5, D 0.9, m 1, ratchet alone, from rest.
 
-use wriggle::mechanics::integrators::Method;
+use bevy::{ecs::system::EntityCommand, prelude::*};
+use wriggle::{
+    creatures::{
+        Body, Pose,
+        library::{Source, read_creature},
+    },
+    mechanics::integrators::Method,
+};
 
-use crate::support::{Worm, particles, stepping_app};
+use crate::{
+    files::RAW,
+    support::{Worm, particles, stepping_app},
+};
 
 const EXACT: [f64; 3] = [3.058918927290, 3.994998746503, 5.085548685141];
+
+/// The worm as its file says.
+fn read() -> Body {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("exact.creature.ron");
+    std::fs::write(&path, RAW).unwrap();
+    read_creature(&Source::Disk(path)).unwrap().body(Pose::default()).unwrap()
+}
+
+/// Puts the worm into an app, stepped by a method.
+fn spawn(app: &mut App, method: Method) -> Entity {
+    let body = app.world_mut().spawn(method).id();
+    read().apply(app.world_mut().entity_mut(body));
+    body
+}
+
+#[test]
+fn the_file_is_the_worm_that_other_tests_build() {
+    let (read, built) = (read(), Worm::EXACT.body());
+    assert_eq!((read.particles, read.springs), (built.particles, built.springs));
+    assert_eq!((read.muscles, read.friction), (Some(built.muscles), Some(built.friction)));
+}
 
 /// The largest error of a position at t = 20.
 fn error(method: Method, dt: f64) -> f64 {
     let steps = (20.0 / dt).round() as u64;
     let mut app = stepping_app(dt, steps);
-    let body = app.world_mut().spawn(Worm { method, ..Worm::EXACT }.body()).id();
+    let body = spawn(&mut app, method);
     app.update();
     particles(&app, body).positions().zip(EXACT).map(|(x, exact)| (x.x - exact).abs()).fold(0.0, f64::max)
 }
@@ -39,7 +71,7 @@ fn the_first_stick_and_slip_events_happen_when_they_should() {
     // C slips at .368158542829, A slips at .835621599543, B sticks at 1.008115772431.
     const DT: f64 = 1e-4;
     let mut app = stepping_app(DT, 1);
-    let body = app.world_mut().spawn(Worm { method: Method::RungeKutta4, ..Worm::EXACT }.body()).id();
+    let body = spawn(&mut app, Method::RungeKutta4);
     let (mut sliding, mut events) = ([false; 3], Vec::new());
     for step in 1..12_000_u64 {
         app.update();
@@ -65,7 +97,7 @@ fn the_first_stick_and_slip_events_happen_when_they_should() {
 fn the_distance_after_20_is_the_known_one_of_the_method() {
     for (dt, travelled) in [(0.05, 3.1561778525), (0.01, 3.0670875950), (0.001, 3.0485331490)] {
         let mut app = stepping_app(dt, (20.0_f64 / dt).round() as u64);
-        let body = app.world_mut().spawn(Worm::EXACT.body()).id();
+        let body = spawn(&mut app, Method::SemiImplicitEuler);
         app.update();
         let center = particles(&app, body).center().x - 1.0;
         assert!((center - travelled).abs() < 2e-9, "{center} at dt {dt}");
