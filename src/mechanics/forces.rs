@@ -65,8 +65,10 @@ impl<R: Real, const D: usize> Model<R, D> {
     #[inline(always)]
     pub fn forces(&mut self, time: f64, position: &[[R; D]], velocity: &[[R; D]], acceleration: &mut [[R; D]]) {
         self.own_forces(time, position, velocity, acceleration);
-        if self.pull.is_some() {
-            self.pull(position, velocity, acceleration);
+        if let Some((particle, pull)) = self.pull(position, velocity) {
+            for (a, pull) in acceleration[particle].iter_mut().zip(pull) {
+                *a += pull;
+            }
         }
     }
 

@@ -400,7 +400,7 @@ impl<R: Real, const D: usize> Model<R, D> {
             springs: body.springs.iter().take(listed).map(spring).collect(),
             muscles: body.muscles.into_iter().flat_map(Muscles::iter).map(MuscleRow::idle).collect(),
             strand: body.strand.map(|strand| StrandRows::idle(strand, body.waves)),
-            pull: PullRow::of(body),
+            pull: PullRow::of(body, dt),
             tearing: body.tearing.map(|_| TearingRows::idle(body.springs.len())),
             spine,
             sections,
@@ -433,6 +433,9 @@ impl<R: Real, const D: usize> Model<R, D> {
             self.inverse_mass.iter_mut().zip(body.particles.masses()).zip(body.particles.pinned())
         {
             row.set_lane(lane, if pinned { 0.0 } else { 1.0 / mass });
+        }
+        if let Some(pull) = &self.pull {
+            self.inverse_mass[pull.particle].set_lane(lane, 1.0 / (body.particles.masses()[pull.particle] + pull.mass));
         }
         for (row, spring) in self.springs.iter_mut().zip(body.springs.iter()) {
             row.stiffness.set_lane(lane, spring.stiffness);

@@ -368,22 +368,6 @@ fn a_pull_is_capped_and_changes_no_bit_with_the_ticks() {
 }
 
 #[test]
-fn a_pull_is_damped_critically() {
-    // A mass alone is pulled with its mass as stiffness: 1 − (1 + t)·e^(−t) of the way.
-    let (mut app, block) = app_of(cube(1, &[], 0.0), Method::RungeKutta4, 0.01, 100);
-    let start = particles(&app, block).position(ParticleId(0)).unwrap();
-    let way = DVec3::X * 2.0;
-    app.world_mut().entity_mut(block).insert(Pull { particle: ParticleId(0), target: start + way });
-    for _ in 0..5 {
-        app.update();
-        let t = app.world().resource::<Clock>().time();
-        let done = 1.0 - (1.0 + t) * libm::exp(-t);
-        let at = particles(&app, block).position(ParticleId(0)).unwrap();
-        assert!((at - start - way * done).length() < 1e-6, "{at} at {t}");
-    }
-}
-
-#[test]
 fn springs_tear_where_they_are_stretched_beyond_their_limit_and_no_sooner() {
     // All strains are 0.15.
     let torn_at = |strain: f64| {

@@ -1,5 +1,6 @@
 //! Integration tests: headless apps, one file a subject.
 
+mod hand;
 mod support;
 
 mod alone;

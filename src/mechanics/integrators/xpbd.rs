@@ -33,6 +33,11 @@ impl<R: Real, const D: usize> Integrator<R, D> for Xpbd<R, D> {
         let (zero, one, dt) = (R::splat(0.0), R::splat(1.0), R::splat(model.dt));
         self.start.copy_from_slice(&state.position);
         let kept = one - model.damping.map_or(zero, |damping| damping.loss);
+        if let Some((particle, pull)) = model.pull(&state.position, &state.velocity) {
+            for (v, pull) in state.velocity[particle].iter_mut().zip(pull) {
+                *v += pull * dt;
+            }
+        }
         for ((x, v), &inverse_mass) in state.position.iter_mut().zip(&mut state.velocity).zip(&model.inverse_mass) {
             if let (Some(gravity), true) = (model.gravity, D == 3) {
                 v[1] -= zero.if_below(inverse_mass, gravity * dt, zero);

@@ -101,6 +101,13 @@ impl<const D: usize> Linear<D> {
                 }
             }
         }
+        if let Some(pull) = &model.pull {
+            let mass = pull.particle;
+            let slope = pull.slope(stage.position[mass], stage.velocity[mass], [of_damping, of_stiffness]);
+            for (sum, value) in self.diagonal[mass].as_flattened_mut().iter_mut().zip(slope.as_flattened()) {
+                *sum += value;
+            }
+        }
         if let Some(friction) = model.friction {
             for (row, frame) in model.spine.iter().zip(frames) {
                 let mass = row.particle as usize;
