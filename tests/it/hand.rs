@@ -39,14 +39,19 @@ fn a_hand_moves_a_mass_alone_as_a_critically_damped_spring_with_the_mass_of_both
     assert!((1.9..2.1).contains(&ratio), "{ratio}");
 }
 
-/// The particles in the middle of a face, of an edge, at a corner and inside of 5³.
+/// The particles in the middle of a face, of an edge, at a corner and inside of a cube.
 fn places(lattice: Lattice) -> [ParticleId; 4] {
-    [[2, 4, 2], [4, 4, 2], [4, 4, 4], [2, 2, 2]].map(|place| lattice.particle(place))
+    let last = lattice.size()[0] as u32 - 1;
+    let middle = last / 2;
+    let places = [[middle, last, middle], [last, last, middle], [last; 3], [middle; 3]];
+    places.map(|place| lattice.particle(place))
 }
 
-/// The largest energies of a free block that is pulled by one mass, in its last stretch in the hand and in three stretches after it was let go.
+/// The largest energies of a free block that is pulled by one mass, in a stretch in the hand and in three stretches after it was let go.
 fn energies(method: Method, damping: f64, part: f64, place: usize) -> [f64; 4] {
-    let plan = cube(5, &Neighbours::ALL, damping);
+    // Steps with a solver take a hundred times as long.
+    let (count, ticks) = if method.asks_forces_alone() { (5, 100) } else { (3, 20) };
+    let plan = cube(count, &Neighbours::ALL, damping);
     let (mut app, block) = app_of(plan, method, 1e-3, 1);
     app.update();
     let limit = app.world().get::<Plan>(block).unwrap().stability_limit();
@@ -67,7 +72,7 @@ fn energies(method: Method, damping: f64, part: f64, place: usize) -> [f64; 4] {
         if stretch == 1 {
             app.world_mut().entity_mut(block).remove::<Pull>();
         }
-        let ticks = (0..100).map(|_| {
+        let ticks = (0..ticks).map(|_| {
             app.update();
             energy(&app)
         });
@@ -81,14 +86,14 @@ fn a_hand_makes_no_step_unstable_that_the_body_bears() {
         // Damped, so that explicit Euler and RK2 have a limit, too.
         for place in 0..4 {
             let [held, first, second, third] = energies(method, 0.2, 0.9, place);
-            // The pull is 1.6 lengths long with the sixth of what an inner mass has, at most 10.4 by 1.6²/2.
-            assert!(held < 4.0, "{method:?}, place {place}: {held} in the hand");
+            // The hand does no more work than its spring of at most 6.5 holds, drawn out by 1.6 lengths.
+            assert!(held < 0.5 * 6.5 * 1.6 * 1.6, "{method:?}, place {place}: {held} in the hand");
             let most = 1.001 * first;
             assert!(second < most && third <= 1.001 * second, "{method:?}, {place}: {first}, {second}, {third}");
         }
     }
     // Undamped, what keeps its energy does so within the bounds of a nearby one.
-    for method in [Method::SemiImplicitEuler, Method::StormerVerlet, Method::DampedVerlet, Method::Leapfrog] {
+    for method in [Method::SemiImplicitEuler, Method::StormerVerlet, Method::DampedVerlet] {
         for place in 0..4 {
             let [_, first, second, third] = energies(method, 0.0, 0.9, place);
             assert!(second < 1.5 * first && third < 1.5 * first, "{method:?}, {place}: {first}, {second}, {third}");
@@ -138,6 +143,7 @@ fn any_mass_of_a_heavy_block_lifts_it() {
 /// The longest spring, in rest lengths.
 fn longest(particles: &Particles, springs: &Springs) -> f64 {
     let place = |end: ParticleId| particles.position(end).unwrap();
-    let part = |spring: wriggle::body::Spring| place(spring.ends[0]).distance(place(spring.ends[1])) / spring.rest_length;
+    let part =
+        |spring: wriggle::body::Spring| place(spring.ends[0]).distance(place(spring.ends[1])) / spring.rest_length;
     springs.iter().map(part).fold(0.0, f64::max)
 }
