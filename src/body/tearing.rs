@@ -15,12 +15,23 @@ pub struct Tearing {
 }
 
 impl Tearing {
+    /// At this strain a spring is taken for exploded, and the watch freezes its body.
+    pub const EXPLODED: f64 = 9.0;
+
     /// Springs that tear at a strain; none is torn yet.
     ///
     /// # Errors
-    /// If the strain is not above zero and finite.
+    /// If the strain is not above zero, or not below [`EXPLODED`](Self::EXPLODED): such springs never tear.
     pub fn new(strain: f64) -> Result<Self, BodyError> {
         let strain = check(strain, Requirement::Positive, || "tear".into())?;
+        if strain >= Self::EXPLODED {
+            let most = Self::EXPLODED;
+            let problem = format!(
+                "{strain} is not allowed; give a number below {most}: a spring as long as {} rest lengths is taken for exploded and its body frozen, before it tears",
+                1.0 + most
+            );
+            return Err(BodyError::Inconsistent { path: "tear".into(), problem });
+        }
         Ok(Self { strain, torn: Vec::new() })
     }
 

@@ -8,7 +8,7 @@ use bevy::{
 };
 use serde::{Deserialize, Deserializer, Serialize, de};
 
-use super::{Body, Look, MOST_PARTICLES, Pose, numbers};
+use super::{Body, FARTHEST, Look, MOST_PARTICLES, Pose, memory, numbers};
 use crate::body::{BodyError, Lattice, Neighbours, Particle, Particles, Spring, Springs, check};
 
 /// A block of masses at spacing 1, its middle above where it is put.
@@ -30,7 +30,7 @@ pub struct JellyPlan {
     /// How it is turned before it leans. Left out: not at all.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rotation: Option<Rotation>,
-    /// How high its lowest mass starts above where it is put, zero or more. Left out: 0.
+    /// How high its lowest mass starts above where it is put, from zero to [`FARTHEST`]. Left out: 0.
     #[serde(default, deserialize_with = "numbers::non_negative")]
     pub drop: f64,
 }
@@ -110,8 +110,10 @@ impl NeighboursPlan {
 }
 
 impl JellyPlan {
-    /// What a particle with all its neighbours takes in memory while its scene is opened, in bytes (measured at 60³).
+    /// What a particle with springs to all its neighbours takes in memory while its scene is opened, in bytes (measured at 60³).
     pub const BYTES_A_PARTICLE: u64 = 1400;
+    /// What of that one of its thirteen springs takes.
+    const BYTES_A_SPRING: u64 = 84;
 
     /// How many particles it has.
     pub fn particles(&self) -> usize {
@@ -119,11 +121,26 @@ impl JellyPlan {
         [x, y, z].into_iter().fold(1, |count: usize, along| count.saturating_mul(along as usize))
     }
 
+    /// What it takes in memory while its scene is opened.
+    fn bytes(&self) -> u64 {
+        const NEIGHBOURS: u64 = 13;
+        let (x, y, z) = self.size;
+        let springs: u64 = self.neighbours.joined().iter().map(|kind| kind.springs([x, y, z])).sum();
+        let alone = Self::BYTES_A_PARTICLE - NEIGHBOURS * Self::BYTES_A_SPRING;
+        self.particles() as u64 * alone + springs * Self::BYTES_A_SPRING
+    }
+
     /// Builds it, without what is not its own.
     pub(super) fn body(&self, pose: Pose) -> Result<Body, BodyError> {
         let inconsistent = |path: &str, problem: String| Err(BodyError::Inconsistent { path: path.into(), problem });
         if let Some(problem) = size_problem(self.size) {
             return inconsistent("size", problem);
+        }
+        if !(0.0..=FARTHEST).contains(&self.drop) {
+            return inconsistent(
+                "drop",
+                format!("{:e} is not allowed; give a number from 0 to {FARTHEST:e}", self.drop),
+            );
         }
         let (x, y, z) = self.size;
         let size = [x, y, z];
@@ -133,8 +150,18 @@ impl JellyPlan {
                 return inconsistent(&format!("neighbours.{name}"), problem);
             }
         }
-        if self.rotation.is_some_and(|rotation| DVec3::from(rotation.axis).length_recip().is_infinite()) {
+        if self.rotation.is_some_and(|rotation| DVec3::from(rotation.axis) == DVec3::ZERO) {
             return inconsistent("rotation.axis", NO_AXIS.into());
+        }
+        let bytes = self.bytes();
+        if let Some(available) = memory::available().filter(|available| bytes > *available) {
+            let problem = format!(
+                "({x}, {y}, {z}) is {} particles, which would take {bytes} bytes ({:.1} GB) with their springs; {available} bytes ({:.1} GB) are available",
+                self.particles(),
+                bytes as f64 / 1e9,
+                available as f64 / 1e9,
+            );
+            return inconsistent("size", problem);
         }
         let attitude = Attitude {
             size,
@@ -227,7 +254,7 @@ impl Attitude {
     fn turn(&self) -> DMat3 {
         let about = |axis: DVec3, degrees: f64| {
             let (sin, cos) = libm::sincos(degrees.to_radians());
-            let axis = axis.normalize();
+            let axis = unit(axis);
             let cross = DMat3::from_cols(
                 DVec3::new(0.0, axis.z, -axis.y),
                 DVec3::new(-axis.z, 0.0, axis.x),
@@ -241,6 +268,11 @@ impl Attitude {
         let rotation = self.rotation.map_or(DMat3::IDENTITY, |turn| about(DVec3::from(turn.axis), turn.angle));
         heading * about(DVec3::Z, self.tilt) * rotation
     }
+}
+
+/// The vector of length 1 along an axis, however long or short that is.
+fn unit(axis: DVec3) -> DVec3 {
+    if axis.length_squared().is_normal() { axis.normalize() } else { (axis / axis.abs().max_element()).normalize() }
 }
 
 const NO_AXIS: &str = "(0, 0, 0) is not allowed; give an axis that has a direction";
@@ -267,10 +299,14 @@ fn size_problem((x, y, z): (u32, u32, u32)) -> Option<String> {
 
 /// Reads the size of a grid for which there is memory.
 fn size<'de, D: Deserializer<'de>>(deserializer: D) -> Result<(u32, u32, u32), D::Error> {
-    // Signed, so that a negative count is told from a word.
-    let (x, y, z) = <(i64, i64, i64)>::deserialize(deserializer)?;
-    match [x, y, z].map(u32::try_from) {
-        [Ok(x), Ok(y), Ok(z)] => match size_problem((x, y, z)) {
+    // Any number, so that a negative count or a part of one is told from a word.
+    let (x, y, z) = <(f64, f64, f64)>::deserialize(deserializer)?;
+    let whole = |count: f64| {
+        let is_whole = (0.0..=f64::from(u32::MAX)).contains(&count) && count.trunc() == count;
+        is_whole.then_some(count as u32)
+    };
+    match [x, y, z].map(whole) {
+        [Some(x), Some(y), Some(z)] => match size_problem((x, y, z)) {
             None => Ok((x, y, z)),
             Some(problem) => Err(de::Error::custom(problem)),
         },

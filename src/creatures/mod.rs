@@ -22,6 +22,7 @@ mod jelly;
 pub mod library;
 mod locate;
 mod look;
+mod memory;
 pub(crate) mod numbers;
 mod parse;
 mod six;
@@ -45,3 +46,6 @@ pub use strand::{StrandPlan, WavePlan};
 
 /// The most particles that the creatures of a scene may have together. Files that ask for more are refused before memory is taken.
 pub const MOST_PARTICLES: usize = 4_000_000;
+
+/// No coordinate of a creature with springs starts further away: from here on, a position has fewer than seven decimals.
+pub const FARTHEST: f64 = 1e9;

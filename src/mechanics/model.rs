@@ -350,7 +350,7 @@ pub struct Explosion {
 }
 
 /// A spring longer than this many rest lengths has exploded.
-pub(super) const LONGEST_STRETCH: f64 = 10.0;
+pub(super) const LONGEST_STRETCH: f64 = 1.0 + Tearing::EXPLODED;
 
 impl<R: Real, const D: usize> Model<R, D> {
     /// `first` in the first lane, the others in the lanes after it, for steps of `dt`. All have the same

@@ -2,7 +2,7 @@
 //! gravity or method. What would do nothing is refused, so that nobody waits for it to do something.
 
 use super::{FileError, LoadedScene, load::scene_conflict};
-use crate::physics::Clock;
+use crate::{creatures::FARTHEST, physics::Clock};
 
 /// Finds the first thing that does nothing.
 pub(super) fn check(scene: &LoadedScene) -> Result<(), FileError> {
@@ -44,8 +44,6 @@ pub(super) fn check(scene: &LoadedScene) -> Result<(), FileError> {
 
 /// Creatures must stand where numbers still tell the lengths of their springs.
 fn check_places(scene: &LoadedScene) -> Result<(), FileError> {
-    /// From here on, a position has fewer than seven decimals.
-    const FARTHEST: f64 = 1e9;
     for (i, placement) in scene.file.creatures.iter().enumerate() {
         let (x, y, z) = placement.at;
         if let Some(far) = [x, y, z].into_iter().find(|coordinate| coordinate.abs() > FARTHEST) {
