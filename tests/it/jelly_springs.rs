@@ -37,7 +37,9 @@ fn kinds(world: &World, body: Entity) -> Vec<(f64, f64)> {
 fn only_the_neighbours_that_a_block_joins_are_offered() {
     let mut world = world("jelly-lab");
     let of = |kinds: &[&str]| {
-        let all = kinds.iter().flat_map(|kind| [format!("{kind}.stiffness"), format!("{kind}.damping")]);
+        let all = kinds
+            .iter()
+            .flat_map(|kind| ["stiffness", "damping", "rest_length"].map(|field| format!("{kind}.{field}")));
         core::iter::once("tilt".to_owned()).chain(all).collect::<Vec<_>>()
     };
     assert_eq!(fields(&mut world, "edges"), of(&["edges"]));
@@ -144,6 +146,8 @@ fn springs_of_a_kind_are_saved_by_one_path() {
             ("all.block.faces.stiffness", 3.0)
         ])
     );
+    let longer = [("edges.block.edges.rest_length", 1.25)];
+    assert_eq!(saved(&longer), told(&longer));
     let mixed = [("faces.block.edges.stiffness", 2.0), ("faces.springs[400].stiffness", 3.0)];
     assert_eq!(saved(&mixed), told(&mixed));
 }
@@ -165,4 +169,31 @@ fn what_a_file_sets_of_a_kind_holds_against_what_it_sets_of_all() {
     let stiffness = |i: usize| springs.get(SpringId(i as u32)).unwrap().stiffness;
     let starts = Neighbours::ALL.map(|kind| stiffness(lattice.range(kind).start));
     assert_eq!((starts, stiffness(1)), ([4.0, 2.0, 3.0], 3.0));
+}
+
+#[test]
+fn no_rest_length_is_that_of_all_springs_of_a_block() {
+    let mut world = world("jelly-lab");
+    let body = world.resource::<SceneBodies>().0[3];
+    let before = world.get::<Springs>(body).unwrap().clone();
+    // Neighbours at √2 and √3 would be drawn to 1, and the block crumpled.
+    let problem = parameters::set(&mut world, "all.springs.rest_length", 1.0).unwrap_err().to_string();
+    for kind in ["edges", "faces", "cubes"] {
+        assert!(problem.contains(&format!("`all.block.{kind}.rest_length`")), "{problem}");
+    }
+    assert_eq!(*world.get::<Springs>(body).unwrap(), before);
+    let listed = parameters::list(&mut world);
+    assert!(listed.iter().all(|parameter| !parameter.path.contains(".springs") || !parameter.path.ends_with("length")));
+    let value = |path: &str| listed.iter().find(|parameter| parameter.path == path).unwrap().value;
+    assert_eq!(value("all.block.edges.rest_length"), 1.0);
+    assert_eq!(value("all.block.faces.rest_length"), core::f64::consts::SQRT_2);
+    parameters::set(&mut world, "all.block.faces.rest_length", 1.5).unwrap();
+    let springs = world.get::<Springs>(body).unwrap();
+    let lattice = world.get::<Lattice>(body).unwrap();
+    let lengths =
+        Neighbours::ALL.map(|kind| springs.uniform(lattice.range(kind)).map(|spring| spring.rest_length).unwrap());
+    assert_eq!(lengths, [1.0, 1.5, 3.0_f64.sqrt()]);
+    // One spring can still be set by itself.
+    parameters::set(&mut world, "all.springs[0].rest_length", 1.25).unwrap();
+    assert_eq!(world.get::<Springs>(body).unwrap().get(SpringId(0)).unwrap().rest_length, 1.25);
 }

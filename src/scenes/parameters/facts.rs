@@ -152,6 +152,14 @@ impl Quantity {
                 };
                 (Group::Block, field, NonNegative, (0.0, 10.0), "force·time/length", help)
             }
+            Self::KindRestLength(kind) => {
+                let (field, help) = match kind {
+                    Neighbours::Edges => ("edges.rest_length", "rest length L of springs along the edges of cells"),
+                    Neighbours::Faces => ("faces.rest_length", "rest length L of springs across the faces of cells"),
+                    Neighbours::Cubes => ("cubes.rest_length", "rest length L of springs across cells"),
+                };
+                (Group::Block, field, Positive, (0.1, 4.0), "length", help)
+            }
             Self::Six(six) => six.facts(),
         }
     }

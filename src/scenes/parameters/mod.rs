@@ -83,6 +83,8 @@ pub(super) struct Values {
     values: Vec<f64>,
     /// The springs that it sets, where it is of neighbours of a kind and they all have its value.
     springs: Option<Range<usize>>,
+    /// Whether one value can be set for all elements.
+    one_for_all: bool,
 }
 
 /// The elements of larger bodies can be set one by one and are not listed: nobody reads a hundred thousand springs.
@@ -101,7 +103,8 @@ pub fn list(world: &mut World) -> Vec<Parameter> {
             clock_value(world, quantity).map(|value| quantity.parameter(format!("clock.{}", quantity.field()), value)),
         );
     }
-    for Values { body, quantity, values, .. } in body_values(world) {
+    // What cannot be set for all is set one by one, or by neighbours of a kind.
+    for Values { body, quantity, values, .. } in body_values(world).into_iter().filter(|values| values.one_for_all) {
         all.extend(values.first().map(|&first| quantity.parameter(quantity.path(&body, None), first)));
         if quantity.group().is_indexed() && values.len() <= MOST_LISTED {
             let elements = values.iter().enumerate();
@@ -165,7 +168,8 @@ pub(super) fn body_values(world: &mut World) -> Vec<Values> {
                 let springs = quantity.springs(entity).filter(|range| {
                     entity.get::<Springs>().is_some_and(|springs| springs.uniform(range.clone()).is_some())
                 });
-                all.push(Values { body: name.to_string(), quantity, values, springs });
+                let one_for_all = quantity.has_one_for_all(entity);
+                all.push(Values { body: name.to_string(), quantity, values, springs, one_for_all });
             }
         }
     }
@@ -177,12 +181,12 @@ pub(super) fn body_values(world: &mut World) -> Vec<Values> {
 pub(super) fn changes(base: Vec<Values>, now: Vec<Values>) -> BTreeMap<String, f64> {
     let base: HashMap<_, _> = base.into_iter().map(|base| ((base.body, base.quantity), base.values)).collect();
     let mut all = BTreeMap::new();
-    for Values { body, quantity, values, .. } in &now {
+    for Values { body, quantity, values, one_for_all, .. } in &now {
         let Some(base) = base.get(&(body.clone(), *quantity)) else { continue };
         let changed: Vec<_> = (0..values.len()).filter(|&i| base.get(i) != Some(&values[i])).collect();
         match &values[..] {
             _ if changed.is_empty() || quantity.of_all_springs().is_some() => {}
-            [first, rest @ ..] if rest.iter().all(|value| value == first) => {
+            [first, rest @ ..] if *one_for_all && rest.iter().all(|value| value == first) => {
                 all.insert(quantity.path(body, None), *first);
             }
             _ => {
@@ -283,7 +287,10 @@ fn resolve(world: &mut World, path: &str) -> Result<(Quantity, Option<Target>), 
     let Some(quantity) =
         present().find(|quantity| Some(quantity.group()) == group && quantity.field_in_path() == field)
     else {
-        let paths: Vec<_> = present().map(|quantity| quantity.path(name, None)).collect();
+        let paths: Vec<_> = present()
+            .filter(|quantity| quantity.has_one_for_all(entity))
+            .map(|quantity| quantity.path(name, None))
+            .collect();
         let near: Vec<_> = paths.iter().filter(|known| looks_like(known, path)).cloned().collect();
         return Err(unknown(if near.is_empty() {
             format!("`{name}` has {}", paths.join(", "))
@@ -296,6 +303,11 @@ fn resolve(world: &mut World, path: &str) -> Result<(Quantity, Option<Target>), 
         Some(_) if !quantity.group().is_indexed() => Err(unknown(format!("give `{}`", quantity.path(name, None)))),
         Some(index) if index >= count => {
             Err(unknown(format!("`{name}` has {count} {}, counted from 0", quantity.group().name())))
+        }
+        None if !quantity.has_one_for_all(entity) => {
+            let kinds = present().filter(|kind| kind.of_all_springs() == Some(quantity));
+            let kinds: Vec<_> = kinds.map(|kind| format!("`{}`", kind.path(name, None))).collect();
+            Err(unknown(format!("neighbours at different distances need different ones; give {}", kinds.join(", "))))
         }
         index => Ok((quantity, Some((body, index)))),
     }

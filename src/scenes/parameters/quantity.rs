@@ -141,12 +141,13 @@ pub(super) enum Quantity {
     /// Of all springs of a block between neighbours of a kind.
     KindStiffness(Neighbours),
     KindDamping(Neighbours),
+    KindRestLength(Neighbours),
     /// Of a body of the six-matrix particle system.
     Six(SixQuantity),
 }
 
 impl Quantity {
-    pub(super) const OF_BODIES: [Self; 52] = [
+    pub(super) const OF_BODIES: [Self; 55] = [
         Self::Stiffness,
         Self::Damping,
         Self::RestLength,
@@ -176,10 +177,13 @@ impl Quantity {
         Self::Tilt,
         Self::KindStiffness(Neighbours::Edges),
         Self::KindDamping(Neighbours::Edges),
+        Self::KindRestLength(Neighbours::Edges),
         Self::KindStiffness(Neighbours::Faces),
         Self::KindDamping(Neighbours::Faces),
+        Self::KindRestLength(Neighbours::Faces),
         Self::KindStiffness(Neighbours::Cubes),
         Self::KindDamping(Neighbours::Cubes),
+        Self::KindRestLength(Neighbours::Cubes),
         Self::Six(SixQuantity::Damping),
         Self::Six(SixQuantity::BondStiffness),
         Self::Six(SixQuantity::CollisionStiffness),
@@ -435,13 +439,21 @@ impl Quantity {
         match self {
             Self::KindStiffness(_) => Some(Self::Stiffness),
             Self::KindDamping(_) => Some(Self::Damping),
+            Self::KindRestLength(_) => Some(Self::RestLength),
             _ => None,
         }
     }
 
+    /// Whether one value can be meant for all elements. The springs of a block to neighbours at different distances have no length in common: one would crumple it.
+    pub(super) fn has_one_for_all(self, body: EntityRef) -> bool {
+        self != Self::RestLength || !body.contains::<Lattice>()
+    }
+
     /// The springs that a quantity of a block sets, where it has any.
     pub(super) fn springs(self, body: EntityRef) -> Option<Range<usize>> {
-        let (Self::KindStiffness(kind) | Self::KindDamping(kind)) = self else { return None };
+        let (Self::KindStiffness(kind) | Self::KindDamping(kind) | Self::KindRestLength(kind)) = self else {
+            return None;
+        };
         let range = body.get::<Lattice>()?.range(kind);
         body.get::<Springs>().filter(|springs| !range.is_empty() && range.end <= springs.len()).map(|_| range)
     }
@@ -465,7 +477,7 @@ impl Quantity {
     fn of_spring(self, spring: &mut Spring) -> &mut f64 {
         match self {
             Self::Damping | Self::KindDamping(_) => &mut spring.damping,
-            Self::RestLength => &mut spring.rest_length,
+            Self::RestLength | Self::KindRestLength(_) => &mut spring.rest_length,
             _ => &mut spring.stiffness,
         }
     }
