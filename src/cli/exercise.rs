@@ -27,7 +27,7 @@ pub(super) struct ExerciseArguments {
 pub(super) fn exercise(arguments: &ExerciseArguments) -> Result<Outcome, CliError> {
     let options = match arguments.quick {
         false => ExerciseOptions::default(),
-        true => ExerciseOptions { count: 3, time: 300.0, halvings: 4, trial: 750 },
+        true => ExerciseOptions { count: 3, time: 600.0, halvings: 4, trial: 750 },
     };
     if let Some(folder) = &arguments.out {
         // Known before anything is measured.

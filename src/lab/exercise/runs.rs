@@ -131,6 +131,11 @@ impl Block {
         self.take(steps.saturating_sub(self.step));
     }
 
+    /// Where a mass is and how fast it falls; nothing where there is no such mass.
+    pub(super) fn fall(&self, mass: ParticleId) -> Option<(f64, f64)> {
+        self.body.particles.get(mass).map(|particle| (particle.position.y, -particle.velocity.y))
+    }
+
     /// Follows it, and measures it so many times.
     pub(super) fn follow(&mut self, time: f64, samples: u32, measure: impl Fn(&Self) -> f64) -> Vec<(f64, f64)> {
         let mut places = vec![(self.time(), measure(self))];
@@ -185,23 +190,79 @@ fn is_stable(
     Ok(true)
 }
 
-/// The largest stable step in an interval, by halving it.
+/// A largest stable step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Limit {
+    pub(super) dt: f64,
+    /// Whether a step just above it was found unstable; if not, none was, up to this one.
+    pub(super) found: bool,
+}
+
+impl Limit {
+    /// It as text.
+    pub(super) fn text(self, digits: usize) -> String {
+        format!("{}{:.digits$}", if self.found { "" } else { "> " }, self.dt)
+    }
+}
+
+/// The largest stable step, by halving an interval, which is widened until its ends are a stable and an unstable step.
 pub(super) fn largest_step(
     plan: &JellyPlan,
     method: Method,
     damping: Option<MassDamping>,
     [mut low, mut high]: [f64; 2],
     options: &ExerciseOptions,
-) -> Result<f64, BodyError> {
+) -> Result<Limit, BodyError> {
+    /// No further than this times the interval's end.
+    const WIDEST: f64 = 4.0;
+    const WIDER: f64 = 1.25;
+    let stable = |dt: f64| is_stable(plan, method, damping, dt, options.trial);
+    let most = WIDEST * high;
+    while stable(high)? {
+        if high > most {
+            return Ok(Limit { dt: high, found: false });
+        }
+        (low, high) = (high, WIDER * high);
+    }
+    // A step of 0 is stable.
+    while low > 0.0 && !stable(low)? {
+        (low, high) = (low / WIDER, low);
+    }
     for _ in 0..options.halvings {
         let middle = 0.5 * (low + high);
-        if is_stable(plan, method, damping, middle, options.trial)? { low = middle } else { high = middle }
+        if stable(middle)? { low = middle } else { high = middle }
     }
-    Ok(low)
+    Ok(Limit { dt: low, found: true })
 }
 
 /// The eigenvalues of the stiffness of a block at rest with k = m = 1, in rising order; none where they cannot be found.
 pub(super) fn spectrum(body: &Body) -> Vec<f64> {
+    stiffness(body).self_adjoint_eigenvalues(Side::Lower).unwrap_or_default()
+}
+
+/// Below this, an eigenvalue of the stiffness is none.
+pub(super) const NO_STIFFNESS: f64 = 1e-10;
+
+/// The motions that no spring of a block at rest resists, each a vector of length 1 across the others: those of a rigid body, and mechanisms.
+pub(super) fn free_motions(body: &Body) -> Vec<Vec<f64>> {
+    let Ok(found) = stiffness(body).self_adjoint_eigen(Side::Lower) else { return Vec::new() };
+    let values = found.S().column_vector();
+    let free = (0..values.nrows()).filter(|&i| values[i].abs() < NO_STIFFNESS);
+    free.map(|i| found.U().col(i).iter().copied().collect()).collect()
+}
+
+/// What of a vector is along others, which are of length 1 and across each other.
+pub(super) fn along(vector: &[f64], others: &[Vec<f64>]) -> Vec<f64> {
+    let mut sum = vec![0.0; vector.len()];
+    for other in others {
+        let part: f64 = vector.iter().zip(other).map(|(a, b)| a * b).sum();
+        sum.iter_mut().zip(other).for_each(|(sum, value)| *sum += part * value);
+    }
+    sum
+}
+
+/// The stiffness matrix of a block at rest.
+fn stiffness(body: &Body) -> Mat<f64> {
     let count = 3 * body.particles.len();
     let mut matrix = Mat::<f64>::zeros(count, count);
     for spring in body.springs.iter() {
@@ -218,5 +279,5 @@ pub(super) fn spectrum(body: &Body) -> Vec<f64> {
             }
         }
     }
-    matrix.self_adjoint_eigenvalues(Side::Lower).unwrap_or_default()
+    matrix
 }
