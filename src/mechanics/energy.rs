@@ -36,6 +36,11 @@ pub fn momentum(particles: &Particles) -> DVec3 {
 }
 
 /// Angular momentum about the origin, Σ m x × v.
+///
+/// That of a free body stays, but for rounding, by semi-implicit Euler, Störmer–Verlet, damped Verlet without damping by mass, leapfrog, and the implicit midpoint rule: they kick
+/// masses along the lines between places at which these stay meanwhile, and move them along velocities between the kicks. Runge–Kutta methods keep it to
+/// their order, since stages see forces and velocities of different places; both Euler methods that evaluate at one end of a step alone, to order 1, and so does XPBD,
+/// which pushes along lines that turn within the step. Every method keeps momentum.
 pub fn angular_momentum(particles: &Particles) -> DVec3 {
     let moments = particles.positions().zip(particles.velocities()).zip(particles.masses());
     moments.map(|((x, v), &m)| x.cross(v) * m).sum()
