@@ -264,11 +264,11 @@ fn on_a_plane_without_friction_a_block_slides_as_a_point() {
         app.update();
         let time = app.world().resource::<Clock>().time();
         let speed = momentum(particles(&app, block)).dot(down) / 64.0;
-        assert!((speed / (0.5 * gravity * time) - 1.0).abs() < 1e-12, "{speed} at {time}");
-        // Where in a step it meets the plane is known to the step alone.
+        assert!((speed / (0.5 * gravity * time) - 1.0).abs() < 1e-10, "{speed} at {time}");
+        // Where within a step a mass meets the plane is known on straight ways alone: less than a step late or early.
         let moved = (particles(&app, block).center() - start).dot(down);
         let point = 0.25 * gravity * time * time;
-        assert!((moved / point - 1.0).abs() < 1e-4, "{moved} of {point} at {time}");
+        assert!((moved / point - 1.0).abs() < 0.2 / time, "{moved} of {point} at {time}");
     }
     // It lies on the plane, and is whole.
     let heights = particles(&app, block).positions().map(|x| (x + DVec3::Y * 4.0).dot(across));
