@@ -19,6 +19,7 @@ mod exact_worm;
 mod failures;
 mod files;
 mod friction;
+mod gait;
 mod gallery;
 mod garden_worm;
 mod jelly;

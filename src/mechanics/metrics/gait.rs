@@ -1,5 +1,7 @@
 //! The gait of a strand, measured over its last cycles.
 
+use std::collections::VecDeque;
+
 use bevy::math::{DVec2, DVec3};
 use serde::Serialize;
 
@@ -11,7 +13,9 @@ use crate::{
 use super::{
     bend, cell_volume,
     fourier::{Spectrum, reflected},
-    heading, is_lifted, length_at_rest, path, section_center, section_width, segment_length, spine_vector, strains,
+    heading, is_lifted, length_at_rest,
+    path::Path,
+    section_center, section_width, segment_length, spine_vector, strains,
 };
 
 /// How often a cycle is looked at.
@@ -20,8 +24,15 @@ pub const SAMPLES_A_CYCLE: usize = 200;
 const CYCLES: usize = 4;
 /// Every so many samples one counts for the path and the bends.
 const COARSE: usize = 2;
+/// Over how many cycles the path is kept that sections are to follow, where no sample is left out. A body that gets on by 1/28 of its length a cycle or more
+/// has left behind what is older when its gait is measured.
+const PATH_CYCLES: usize = 32;
+/// By how many cycles a sample may be late: by half a step.
+const LATE: f64 = 0.5 / SAMPLES_A_CYCLE as f64;
 
 /// Watches a strand, and measures its gait. Feed it often, from the start on: it takes a sample when one is due.
+///
+/// It keeps the samples of the last four cycles and the path of the last 32, however long it watches.
 #[derive(Clone, Debug)]
 pub struct Gait {
     strand: Strand,
@@ -31,9 +42,18 @@ pub struct Gait {
     wavelength: Option<f64>,
     /// The length of the body at rest.
     length: f64,
-    samples: Vec<Sample>,
+    /// Those of the last cycles.
+    samples: VecDeque<Sample>,
     /// Which sample comes next, counted in parts of a cycle from time 0.
     due: u64,
+    /// When the first sample was taken, in cycles.
+    first: f64,
+    /// How many samples were taken.
+    taken: usize,
+    /// The way of the section behind the head, from above.
+    path: Path,
+    /// The smallest volume of a segment in any sample.
+    smallest_cell: f64,
 }
 
 #[derive(Clone, Debug)]
@@ -46,7 +66,6 @@ struct Sample {
     lengths: Vec<f64>,
     bends: Vec<f64>,
     widths: Vec<f64>,
-    smallest_cell: f64,
     worst_strain: f64,
     /// The mean of the squared strains.
     square_strain: f64,
@@ -74,7 +93,8 @@ pub struct GaitMetrics {
     pub slip: f64,
     /// The part of the sections whose lower masses are both off the ground.
     pub lifted: f64,
-    /// How far the sections from the second to the fourth from the head are from the path of the second from the head, on average (lengths).
+    /// How far the sections from the second to the fourth from the head are from the path of the second from the head, on average (lengths): from where that
+    /// was in the last 32 cycles.
     pub path_error: f64,
     /// The largest |l/L − 1| of all springs.
     pub worst_strain: f64,
@@ -103,8 +123,12 @@ impl Gait {
             period: waves.longest_period()?,
             wavelength: lateral.map(|wave| wave.wavelength),
             length: length_at_rest(body.springs, strand),
-            samples: Vec::new(),
+            samples: VecDeque::new(),
             due: 0,
+            first: 0.0,
+            taken: 0,
+            path: Path::new(PATH_CYCLES * SAMPLES_A_CYCLE / COARSE),
+            smallest_cell: f64::INFINITY,
         })
     }
 
@@ -116,7 +140,8 @@ impl Gait {
     /// Looks at the body at `time` if it is time to, within half a step.
     pub fn sample(&mut self, body: &BodyParts<'_>, time: f64, dt: f64) {
         let part = ((time + 0.5 * dt) / self.period * SAMPLES_A_CYCLE as f64) as u64;
-        if part < self.due {
+        // Cycles that are too short to be counted are not looked at.
+        if part < self.due || part == u64::MAX {
             return;
         }
         self.due = part + 1;
@@ -139,15 +164,29 @@ impl Gait {
             slip[0] += side.dot(v).abs();
             slip[1] += v.length();
         }
-        self.samples.push(Sample {
-            cycles: time / self.period,
+        let cycles = time / self.period;
+        let sections: Vec<_> = sections.map(|i| from_above(section_center(particles, strand, i))).collect();
+        if self.taken == 0 {
+            self.first = cycles;
+        }
+        if self.taken.is_multiple_of(COARSE) {
+            self.path.push(sections[strand.segments() - 1]);
+        }
+        self.taken += 1;
+        self.smallest_cell =
+            segments.clone().map(|i| cell_volume(particles, strand, i)).fold(self.smallest_cell, f64::min);
+        // One more than the last cycles ask for may be late by half a step.
+        while self.samples.front().is_some_and(|sample| sample.cycles < cycles - CYCLES as f64 - 2.0 * LATE) {
+            self.samples.pop_front();
+        }
+        self.samples.push_back(Sample {
+            cycles,
             center: particles.center(),
             heading: heading(particles, strand),
-            sections: sections.clone().map(|i| from_above(section_center(particles, strand, i))).collect(),
+            widths: (0..sections.len()).map(|i| section_width(particles, strand, i)).collect(),
+            sections,
             lengths: segments.clone().map(|i| segment_length(particles, strand, i)).collect(),
-            bends: segments.clone().map(|i| bend(particles, strand, i)).collect(),
-            widths: sections.map(|i| section_width(particles, strand, i)).collect(),
-            smallest_cell: segments.map(|i| cell_volume(particles, strand, i)).fold(f64::INFINITY, f64::min),
+            bends: segments.map(|i| bend(particles, strand, i)).collect(),
             worst_strain: strains.iter().map(|strain| strain.abs()).fold(0.0, f64::max),
             square_strain: strains.iter().map(|strain| strain * strain).sum::<f64>() / strains.len() as f64,
             lifted,
@@ -155,30 +194,29 @@ impl Gait {
         });
     }
 
-    /// The gait so far; nothing before a whole cycle is over.
+    /// The gait so far; nothing before a whole cycle is over, and where there are no two samples in the last cycles, as cycles are shorter than steps.
     pub fn measure(&self) -> Option<GaitMetrics> {
-        let (first, end) = (self.samples.first()?, self.samples.last()?);
-        // A sample may be late by half a step.
-        let late = 0.5 / SAMPLES_A_CYCLE as f64;
-        let cycles = ((end.cycles - first.cycles + late) as usize).min(CYCLES);
+        let end = self.samples.back()?;
+        let cycles = ((end.cycles - self.first + LATE) as usize).min(CYCLES);
         if cycles == 0 {
             return None;
         }
-        let from = self.samples.partition_point(|sample| sample.cycles < end.cycles - cycles as f64 - late);
-        let last = &self.samples[from..];
+        let from = self.samples.partition_point(|sample| sample.cycles < end.cycles - cycles as f64 - LATE);
+        let last: Vec<_> = self.samples.range(from..).collect();
         // The end of the last cycle is the start of the next.
-        let (start, whole) = (&last[0], &last[..last.len() - 1]);
+        let (_, whole) = last.split_last()?;
+        let start = whole.first().filter(|start| end.cycles - start.cycles > 0.0)?;
         let way = from_above(end.center - start.center) / (end.cycles - start.cycles);
         let headings = unwrapped(last.iter().map(|sample| sample.heading));
         let mean_heading = headings.iter().sum::<f64>() / headings.len() as f64;
         let direction = DVec2::new(libm::cos(mean_heading), libm::sin(mean_heading));
         let across = DVec2::new(-direction.y, direction.x);
-        let mean = |of: &dyn Fn(&Sample) -> f64| whole.iter().map(of).sum::<f64>() / whole.len() as f64;
+        let mean =
+            |of: &dyn Fn(&Sample) -> f64| whole.iter().map(|sample| of(sample)).sum::<f64>() / whole.len() as f64;
         let sum = |part: usize| whole.iter().map(|sample| sample.slip[part]).sum::<f64>();
-        let bends: Vec<_> = whole.iter().step_by(COARSE).collect();
+        let bends: Vec<_> = whole.iter().copied().step_by(COARSE).collect();
         let bends = self.spectra(&bends, |sample, segment| sample.bends[segment]);
-        let lengths: Vec<_> = whole.iter().collect();
-        let lengths = self.spectra(&lengths, |sample, segment| sample.lengths[segment]);
+        let lengths = self.spectra(whole, |sample, segment| sample.lengths[segment]);
         Some(GaitMetrics {
             cycles,
             distance: way.length(),
@@ -199,7 +237,7 @@ impl Gait {
                 reflected(places, wavelength)
             }),
             width_swing: self.width_swing(whole),
-            smallest_cell: self.samples.iter().map(|sample| sample.smallest_cell).fold(f64::INFINITY, f64::min),
+            smallest_cell: self.smallest_cell,
         })
     }
 
@@ -208,17 +246,15 @@ impl Gait {
         (0..self.strand.segments()).map(spectrum).collect()
     }
 
-    fn path_error(&self, whole: &[Sample]) -> f64 {
-        let segments = self.strand.segments();
-        let path: Vec<_> = self.samples.iter().step_by(COARSE).map(|sample| sample.sections[segments - 1]).collect();
-        let followers = 1..segments.saturating_sub(2);
+    fn path_error(&self, whole: &[&Sample]) -> f64 {
+        let followers = 1..self.strand.segments().saturating_sub(2);
         let distances: Vec<_> = (whole.iter().step_by(COARSE))
-            .flat_map(|sample| followers.clone().map(|section| path::distance(&path, sample.sections[section])))
+            .flat_map(|sample| followers.clone().map(|section| self.path.distance(sample.sections[section])))
             .collect();
         if distances.is_empty() { 0.0 } else { distances.iter().sum::<f64>() / distances.len() as f64 }
     }
 
-    fn width_swing(&self, whole: &[Sample]) -> f64 {
+    fn width_swing(&self, whole: &[&Sample]) -> f64 {
         let swing = |section: usize| {
             let widths = whole.iter().map(|sample| sample.widths[section]);
             widths.clone().fold(f64::NEG_INFINITY, f64::max) - widths.fold(f64::INFINITY, f64::min)
