@@ -1,6 +1,6 @@
 //! A scene without a renderer, stepped by hand.
 
-use std::io::Write;
+use std::{collections::HashSet, io::Write};
 
 use bevy::{
     app::{TaskPoolOptions, TaskPoolPlugin, TaskPoolThreadAssignmentPolicy},
@@ -10,9 +10,9 @@ use bevy::{
 
 use super::{CliError, Outcome};
 use crate::{
-    body::Particles,
+    body::{Muscles, Particles, TravelingWaves},
     creatures::FileError,
-    physics::{BodyFrozen, BodyInverted, Clock, Cost, Frozen, PhysicsPlugin, Plan, Ticks},
+    physics::{BodyFrozen, BodyInverted, Clock, Cost, Frozen, PhysicsPlugin, Plan, Ticks, WavesCut, cut_waves},
     scenes::{self, LoadedScene, SceneBodies, garden},
 };
 
@@ -20,6 +20,8 @@ use crate::{
 pub struct Headless {
     app: App,
     warned: bool,
+    /// Bodies whose waves are cut as their files have them: that was said when they were read.
+    cut: HashSet<Entity>,
 }
 
 impl Headless {
@@ -37,7 +39,9 @@ impl Headless {
         app.finish();
         app.cleanup();
         scenes::open(app.world_mut(), scene)?;
-        Ok(Self { app, warned: false })
+        let mut run = Self { app, warned: false, cut: HashSet::new() };
+        run.cut = run.bodies().map(|(_, body, _)| body).filter(is_cut).map(|body| body.id()).collect();
+        Ok(run)
     }
 
     /// The world.
@@ -79,6 +83,9 @@ impl Headless {
         self.world_mut().run_schedule(Ticks);
         let mut said = self.unstable();
         said.extend(self.world_mut().resource_mut::<Messages<BodyFrozen>>().drain().map(|frozen| frozen.text));
+        let cut: Vec<_> = self.world_mut().resource_mut::<Messages<WavesCut>>().drain().collect();
+        let cut = cut.into_iter().filter(|cut| !self.cut.remove(&cut.body)).map(|cut| cut.text);
+        said.extend(cut.map(|text| format!("warning: {text}")));
         let inverted = &mut self.world_mut().resource_mut::<Messages<BodyInverted>>();
         said.extend(inverted.drain().map(|inverted| format!("warning: {}", inverted.text)));
         said
@@ -99,6 +106,10 @@ impl Headless {
             })
             .collect()
     }
+}
+
+fn is_cut(body: &EntityRef<'_>) -> bool {
+    cut_waves(body.get::<Muscles>(), body.get::<TravelingWaves>()).next().is_some()
 }
 
 /// Pools for a computation on `threads`: bodies are stepped in the compute pool, the others stay as small as they can be.

@@ -182,6 +182,8 @@ impl fmt::Display for Report {
             )?;
             if let Some(gait) = &body.gait {
                 write!(f, ", {:.3} of its length a cycle", gait.body_lengths)?;
+                let health = if gait.smallest_cell < 0.0 { " (inside out)" } else { "" };
+                write!(f, ", smallest cell {:.2}{health}", gait.smallest_cell)?;
             }
             if let Some(block) = &body.block {
                 write!(f, ", shape error {:.4}, {} cells inside out", block.shape_error, block.inverted)?;

@@ -22,7 +22,7 @@ use crate::{
     body::{Particles, Rules},
     creatures::library,
     mechanics::integrators::Method,
-    physics::{BodyFrozen, BodyInverted, Clock, Frozen, Plan, Restart, Shown, Steer, Work},
+    physics::{BodyFrozen, BodyInverted, Clock, Frozen, Plan, Restart, Shown, Steer, WavesCut, Work},
     scenes::{self, BodyRescued, CurrentScene, Runner, SceneBodies, SceneChange, SceneProblem, parameters},
     view::{SceneCamera, Selected},
 };
@@ -51,6 +51,7 @@ pub(super) fn listen(
     mut frozen: MessageReader<BodyFrozen>,
     mut inverted: MessageReader<BodyInverted>,
     mut rescued: MessageReader<BodyRescued>,
+    mut cut: MessageReader<WavesCut>,
     mut problems: MessageReader<SceneProblem>,
     mut known: ResMut<Known>,
     mut settings: ResMut<Settings>,
@@ -63,6 +64,9 @@ pub(super) fn listen(
         settings.tell(true, text.clone());
     }
     for BodyRescued { text, .. } in rescued.read() {
+        settings.tell(true, text.clone());
+    }
+    for WavesCut { text, .. } in cut.read() {
         settings.tell(true, text.clone());
     }
     for problem in problems.read() {

@@ -41,7 +41,7 @@ pub use settings::{Action, BodyInfo, CostInfo, Files, Note, Settings};
 pub use traces::Traces;
 
 use crate::{
-    physics::{BodyFrozen, BodyInverted, Restart},
+    physics::{BodyFrozen, BodyInverted, Restart, WavesCut},
     scenes::{BodyRescued, SceneChange, SceneProblem},
     view::{CoveredLeft, LeaveToPanel, PointerOnPanel},
 };
@@ -66,6 +66,7 @@ impl Plugin for PanelPlugin {
         app.add_message::<BodyFrozen>()
             .add_message::<BodyInverted>()
             .add_message::<BodyRescued>()
+            .add_message::<WavesCut>()
             .add_message::<Restart>()
             .add_message::<SceneChange>()
             .add_message::<SceneProblem>()

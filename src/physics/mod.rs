@@ -16,6 +16,7 @@
 //! Pausing is Bevy's `Time<Virtual>::pause`; a paused app takes exactly one tick after `Time<Fixed>::accumulate_overstep(timestep)`.
 
 mod clock;
+mod cut;
 mod layout;
 mod plan;
 mod restart;
@@ -38,6 +39,8 @@ use crate::{
 };
 
 pub use clock::{Clock, Pace};
+pub use cut::WavesCut;
+pub(crate) use cut::cut_waves;
 pub use plan::{Plan, body_parts};
 pub use restart::{Restart, StartState};
 pub use six::six_parts;
@@ -96,7 +99,7 @@ impl PhysicsPlugin {
 impl Plugin for PhysicsPlugin {
     fn build(&self, app: &mut App) {
         app.init_resource::<Clock>().init_resource::<Cost>().add_message::<Restart>();
-        app.add_message::<BodyFrozen>().add_message::<BodyInverted>();
+        app.add_message::<BodyFrozen>().add_message::<BodyInverted>().add_message::<WavesCut>();
         app.register_required_components::<Springs, Method>()
             .register_required_components::<Particles, Plan>()
             .register_required_components::<Particles, Verdict>()

@@ -17,11 +17,15 @@ use crate::{
     mechanics::{
         BodyParts,
         integrators::{Method, StickRule},
-        metrics::cell_volume,
+        metrics::inverted_segment,
     },
 };
 
-use super::{Clock, Frozen, Steer, watch::BodyInverted};
+use super::{
+    Clock, Frozen, Steer,
+    cut::{WavesCut, cut_waves},
+    watch::BodyInverted,
+};
 
 /// The components of one body, beside its particles, that physics reads.
 #[derive(QueryData)]
@@ -105,8 +109,10 @@ pub struct Plan {
     pub(super) warned: Option<f64>,
     /// Why the body cannot be stepped at all.
     pub(super) misfit: Option<String>,
-    /// Whether a segment was inside out when the body was looked at last.
-    inverted: bool,
+    /// When a segment was inside out last, until it has been whole for long enough to be told of again.
+    inverted: Option<f64>,
+    /// Whether the least rest length may cut its waves.
+    cut: bool,
 }
 
 impl Plan {
@@ -154,24 +160,8 @@ pub(super) type Changes = Or<(
     Changed<StickRule>,
 )>;
 
-/// What is read of a body to plan it.
-type Planned = (&'static Particles, Parts, Option<&'static Tearing>, Option<&'static Steer>, &'static mut Plan);
-
-/// Plans every body that was changed.
-pub(super) fn plan(clock: Res<Clock>, mut bodies: Query<Planned, (Changes, Without<Rules>)>) {
-    for (particles, parts, tearing, steer, mut plan) in &mut bodies {
-        let body = parts.body(particles, tearing, steer);
-        plan.misfit = misfit(&body);
-        if plan.misfit.is_some() {
-            continue;
-        }
-        plan.topology = topology(&body);
-        plan.limit(&body, &clock);
-    }
-}
-
-/// What is read of a body to watch its limit.
-type Watched = (
+/// What is read of a body to plan it, and to watch it.
+type Planned = (
     Entity,
     Option<&'static Name>,
     &'static Particles,
@@ -181,11 +171,36 @@ type Watched = (
     &'static mut Plan,
 );
 
-/// Works out the limit again of every body whose pose may have changed it, and warns where dt is above a limit or a strand has come to be inside out.
+/// Plans every body that was changed, and warns where its waves come to be cut.
+pub(super) fn plan(
+    clock: Res<Clock>,
+    mut bodies: Query<Planned, (Changes, Without<Rules>)>,
+    mut told: MessageWriter<WavesCut>,
+) {
+    for (entity, name, particles, parts, tearing, steer, mut plan) in &mut bodies {
+        let body = parts.body(particles, tearing, steer);
+        plan.misfit = misfit(&body);
+        if plan.misfit.is_some() {
+            continue;
+        }
+        plan.topology = topology(&body);
+        plan.limit(&body, &clock);
+        let cut = cut_waves(body.muscles, body.waves).next();
+        let was_cut = core::mem::replace(&mut plan.cut, cut.is_some());
+        if let Some((path, problem)) = cut.filter(|_| !was_cut) {
+            let text = format!("{}: {path}: {problem}", name.map_or("a body", Name::as_str));
+            warn!("{text}");
+            told.write(WavesCut { body: entity, text });
+        }
+    }
+}
+
+/// Works out the limit again of every body whose pose may have changed it, and warns where dt is above a limit or a strand has come to be inside
+/// out: that is looked for after every tick, as most folds last for a part of a cycle.
 pub(super) fn watch_limit(
     clock: Res<Clock>,
-    mut bodies: Query<Watched, (Without<Frozen>, Without<Rules>)>,
-    mut inverted: MessageWriter<BodyInverted>,
+    mut bodies: Query<Planned, (Without<Frozen>, Without<Rules>)>,
+    mut told: MessageWriter<BodyInverted>,
 ) {
     for (entity, name, particles, parts, tearing, steer, mut plan) in &mut bodies {
         let name = name.map_or("a body", Name::as_str);
@@ -195,17 +210,15 @@ pub(super) fn watch_limit(
         let aged = clock.step().checked_sub(plan.limited_at).is_none_or(|steps| steps >= between);
         if aged && plan.misfit.is_none() && !body.on_axis() {
             plan.limit(&body, &clock);
-            let found = inverted_segment(&body);
-            if let Some(segment) = found.filter(|_| !plan.inverted) {
-                let text = format!(
-                    "{name}: segment {segment} is inside out at step {} (time {:.6}): something squeezes or drives it harder than its springs bear",
-                    clock.step(),
-                    clock.time(),
-                );
-                warn!("{text}");
-                inverted.write(BodyInverted { body: entity, text });
-            }
-            plan.inverted = found.is_some();
+        }
+        if let Some(segment) = newly_inverted(&body, &mut plan, clock.time()) {
+            let text = format!(
+                "{name}: segment {segment} is inside out at step {} (time {:.6}): something squeezes or drives it harder than its springs bear",
+                clock.step(),
+                clock.time(),
+            );
+            warn!("{text}");
+            told.write(BodyInverted { body: entity, text });
         }
         let dt = clock.dt();
         if dt <= plan.stability_limit {
@@ -221,10 +234,20 @@ pub(super) fn watch_limit(
     }
 }
 
-/// The first segment of a strand that is inside out.
-fn inverted_segment(body: &BodyParts<'_>) -> Option<usize> {
-    let strand = body.strand?;
-    (0..strand.segments()).find(|&segment| cell_volume(body.particles, strand, segment) < 0.0)
+/// How many cycles a strand has to be whole before it is told of again that it is inside out: what folds in and out with its waves is told of once.
+const WHOLE_CYCLES: f64 = 4.0;
+
+/// The first segment of a strand that is inside out now, where that has not been told yet.
+fn newly_inverted(body: &BodyParts<'_>, plan: &mut Plan, time: f64) -> Option<usize> {
+    let strand = body.strand.filter(|_| plan.misfit.is_none())?;
+    let Some(segment) = inverted_segment(body.particles, strand) else {
+        let cycle = body.waves.and_then(TravelingWaves::longest_period).unwrap_or(0.0);
+        // A restart counts from 0 again.
+        plan.inverted = plan.inverted.filter(|last| (0.0..=WHOLE_CYCLES * cycle).contains(&(time - last)));
+        return None;
+    };
+    let told = plan.inverted.replace(time).is_some_and(|last| last <= time);
+    (!told).then_some(segment)
 }
 
 fn topology(body: &BodyParts<'_>) -> u64 {

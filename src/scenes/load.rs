@@ -6,11 +6,11 @@ use std::{
     sync::Arc,
 };
 
-use bevy::math::DVec3;
+use bevy::{ecs::world::World, math::DVec3};
 
 use super::{Placement, Props, SceneClock, SceneFile, StepSize, alone, fits, parameters, roads::Roads, spawn};
 use crate::{
-    body::{BodyError, Ground, LEAST_REST_FRACTION, Muscles, TravelingWaves},
+    body::{BodyError, Ground, Muscles, TravelingWave, TravelingWaves},
     creatures::{
         Body, Creature, FileError, MOST_PARTICLES, Pose, RoadForm,
         library::{self, CREATURE, SCENE, Source},
@@ -21,6 +21,7 @@ use crate::{
         integrators::{Method, StickRule},
         six_matrix::Road,
     },
+    physics::{Clock, cut_waves},
 };
 
 /// The step of the six-matrix particle system, as printed.
@@ -229,6 +230,8 @@ fn check(mut scene: LoadedScene) -> Result<LoadedScene, FileError> {
             format!("have {particles} particles together; a scene has at most {MOST_PARTICLES}"),
         ));
     }
+    let set = check_set(&scene)?;
+    let dt = set.as_ref().and_then(|world| world.get_resource::<Clock>()).map_or(scene.file.clock.dt(), Clock::dt);
     let mut warned = BTreeSet::new();
     let (mut warnings, mut ill_timed) = (core::mem::take(&mut scene.warnings), false);
     for (i, body) in scene.bodies().enumerate() {
@@ -236,10 +239,24 @@ fn check(mut scene: LoadedScene) -> Result<LoadedScene, FileError> {
         if let Some(ground) = scene.file.ground.as_ref().filter(|_| body.six.is_none()) {
             check_above_ground(&scene, ground, i, &body)?;
         }
-        if let Some(muscles) = &body.muscles
-            && warned.insert(&scene.creatures[i].0)
+        let (source, set) = (&scene.creatures[i].0, set.as_ref().and_then(|world| spawn::nth_body(world, i)));
+        let own: Vec<_> = cut_waves(body.muscles.as_ref(), body.waves.as_ref()).collect();
+        let cut = match set {
+            Some(body) => cut_waves(body.get::<Muscles>(), body.get::<TravelingWaves>()).collect(),
+            None => own.clone(),
+        };
+        if cut != own {
+            let name = &scene.file.creatures[i].name;
+            let cut = cut.into_iter().map(|(path, problem)| format!("{name}.{path}: {problem}"));
+            warnings.extend(cut.map(|problem| warning(&scene.source, "set".into(), problem)));
+        } else if !cut.is_empty() && warned.insert((source, "cut")) {
+            warnings.extend(cut.into_iter().map(|(path, problem)| warning(source, path, problem)));
+        }
+        let waves = set.map_or(body.waves.as_ref(), |body| body.get());
+        if let Some((path, problem)) = waves.and_then(|waves| hasty_wave(waves, dt))
+            && warned.insert((source, "hasty"))
         {
-            warnings.extend(wide_waves(muscles).map(|(path, text)| warning(&scene.creatures[i].0, path, text)));
+            warnings.push(warning(source, path, problem));
         }
         if body.six.is_some() && scene.file.clock.dt() != SIX_MATRIX_DT && !ill_timed {
             ill_timed = true;
@@ -250,14 +267,8 @@ fn check(mut scene: LoadedScene) -> Result<LoadedScene, FileError> {
             );
             warnings.push(warning(&scene.source, "clock".into(), problem));
         }
-        if let Some(waves) = body.waves.as_ref().filter(|waves| waves.is_cut())
-            && warned.insert(&scene.creatures[i].0)
-        {
-            warnings.push(warning(&scene.creatures[i].0, "waves".into(), cut_waves(waves)));
-        }
     }
     scene.warnings = warnings;
-    check_set(&scene)?;
     Ok(scene)
 }
 
@@ -327,32 +338,24 @@ fn warning(source: &Source, path: String, problem: String) -> String {
     FileError::Conflict { file: source.to_string(), line: line_in(source, &path), path, problem }.to_string()
 }
 
-fn cut_waves(waves: &TravelingWaves) -> String {
-    format!(
-        "their amplitudes and the steering come to {} together, above {}; a rest length never falls below {LEAST_REST_FRACTION} of its length, so \
-         the waves may be cut",
-        waves.reach(),
-        1.0 - LEAST_REST_FRACTION
-    )
-}
-
-/// The paths of amplitudes that are too large, and why.
-fn wide_waves(muscles: &Muscles) -> impl Iterator<Item = (String, String)> + '_ {
-    let most = 1.0 - LEAST_REST_FRACTION;
-    muscles.iter().filter(move |muscle| muscle.amplitude > most).map(move |muscle| {
-        let path = format!("springs[{}].muscle.amplitude", muscle.spring.0);
-        let amplitude = muscle.amplitude;
+/// The path of a wave that is too quick for steps of `dt`, and why.
+fn hasty_wave(waves: &TravelingWaves, dt: f64) -> Option<(String, String)> {
+    /// Fewer steps than these in a cycle do not follow its wave.
+    const LEAST_STEPS: f64 = 20.0;
+    let hasty = |(_, wave): &(usize, TravelingWave)| wave.amplitude > 0.0 && dt > wave.period / LEAST_STEPS;
+    waves.iter().enumerate().find(hasty).map(|(i, wave)| {
         let problem = format!(
-            "{amplitude} is above {most}; the rest length never falls below {LEAST_REST_FRACTION} of its length, so the wave is cut"
+            "{} is less than {LEAST_STEPS} steps of {dt}, which do not follow the wave; give a longer period, or a smaller dt",
+            wave.period
         );
-        (path, problem)
+        (format!("waves[{i}].period"), problem)
     })
 }
 
-/// Sets the scene's parameters in a world of their own, to see whether they can be set.
-fn check_set(scene: &LoadedScene) -> Result<(), FileError> {
+/// Sets the scene's parameters in a world of their own, to see whether they can be set and what comes of it; nothing where it sets none.
+fn check_set(scene: &LoadedScene) -> Result<Option<World>, FileError> {
     if scene.file.set.is_empty() {
-        return Ok(());
+        return Ok(None);
     }
     let mut world = spawn::scratch(scene)?;
     for (path, value) in parameters::in_order(&scene.file.set) {
@@ -363,7 +366,7 @@ fn check_set(scene: &LoadedScene) -> Result<(), FileError> {
             problem: error.to_string(),
         })?;
     }
-    Ok(())
+    Ok(Some(world))
 }
 
 pub(super) fn scene_conflict(scene: &LoadedScene, path: String, problem: String) -> FileError {

@@ -68,6 +68,11 @@ pub(super) fn scratch(scene: &LoadedScene) -> Result<World, FileError> {
     Ok(world)
 }
 
+/// A body by its place in the file of the scene.
+pub(super) fn nth_body(world: &World, index: usize) -> Option<EntityRef<'_>> {
+    world.get_entity(*world.get_resource::<SceneBodies>()?.0.get(index)?).ok()
+}
+
 fn clock(scene: &LoadedScene) -> Result<Clock, FileError> {
     Clock::new(scene.file.clock.dt(), scene.file.clock.time_scale)
         .map_err(|error| scene_conflict(scene, "clock".into(), error.to_string()))

@@ -315,6 +315,46 @@ fn the_gaits_of_strands_are_reported_and_do_not_depend_on_threads() {
 }
 
 #[test]
+fn a_tangle_is_told_of_in_words() {
+    let folder = TempDir::new().unwrap();
+    let run = |arguments: &[&str]| {
+        let output = in_folder(folder.path(), &[&["run", "--dt", "0.03", "--for", "30"], arguments].concat());
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        (stdout(&output), stderr(&output))
+    };
+    let cut = "waves: their amplitudes and the steering come to";
+    let (calm, said) = run(&["worm"]);
+    assert!(calm.contains(", smallest cell 0.") && said.is_empty(), "{calm}{said}");
+    let (wild, said) = run(&["worm", "--set", "worm.waves[0].amplitude=0.95", "--set", "worm.gait.steering=0.4"]);
+    assert!(wild.contains(", smallest cell -") && wild.contains("(inside out)"), "{wild}");
+    assert_eq!(said.matches(cut).count(), 1, "{said}");
+    assert_eq!(said.matches("is inside out at step").count(), 1, "{said}");
+    // What the file says already is said once, with its line.
+    let creature =
+        include_str!("../../assets/creatures/worm.creature.ron").replacen("amplitude: 0.3", "amplitude: 0.9", 1);
+    fs::write(folder.path().join("wide.creature.ron"), creature).unwrap();
+    let (_, said) = run(&["wide.creature.ron"]);
+    assert_eq!((said.matches(cut).count(), said.matches("wide.creature.ron:").count()), (1, 1), "{said}");
+}
+
+#[test]
+fn waves_that_are_quicker_than_steps_have_no_gait() {
+    let folder = TempDir::new().unwrap();
+    for period in ["1e-300", "1e-3"] {
+        let creature = include_str!("../../assets/creatures/worm.creature.ron").replacen(
+            "period: 12",
+            &format!("period: {period}"),
+            1,
+        );
+        fs::write(folder.path().join("quick.creature.ron"), creature).unwrap();
+        let output = in_folder(folder.path(), &["run", "quick.creature.ron", "--dt", "0.02", "--for", "6"]);
+        let (text, said) = (stdout(&output), stderr(&output));
+        assert!(output.status.code() == Some(0) && said.contains("waves[0].period: "), "{period}: {text}{said}");
+        assert!(!text.contains("NaN") && !text.contains("a cycle"), "{period}: {text}");
+    }
+}
+
+#[test]
 fn the_creature_of_the_readme_crawls() {
     let readme = include_str!("../../README.md");
     let creature = readme.split("```ron").nth(1).and_then(|rest| rest.split("```").next()).unwrap();

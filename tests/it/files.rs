@@ -531,6 +531,41 @@ fn waves_that_the_least_rest_length_cuts_are_warned_of() {
 }
 
 #[test]
+fn waves_that_a_scene_sets_are_warned_of_as_they_are_then() {
+    let folder = TempDir::new().unwrap();
+    let wide = STRAND.replacen("amplitude: 0.3", "amplitude: 0.9", 1);
+    fs::write(folder.path().join("wide.creature.ron"), wide).unwrap();
+    let path = folder.path().join("set.scene.ron");
+    let warnings = |set: &str| {
+        let text = format!(
+            "Scene(version: 1, title: \"Set\", ground: Flat,\n\
+             creatures: [(name: \"worm\", creature: \"worm\"), (name: \"wide\", creature: \"wide\", at: (0, 0, 9))],\n\
+             clock: (dt: 0.03, time_scale: 6),\n\
+             set: {{ {set} }})"
+        );
+        fs::write(&path, text).unwrap();
+        scenes::load(name(&path)).unwrap().warnings
+    };
+    let calm = "\"wide.waves[0].amplitude\": 0.3";
+    assert_eq!(warnings(calm), [""; 0]);
+    let both = warnings("\"worm.waves[0].amplitude\": 0.95, \"worm.gait.steering\": 0.4");
+    assert_eq!(both.len(), 2, "{both:?}");
+    assert_says(&both[0], &["set.scene.ron:4: set: worm.waves: ", "come to 1.35 together, above 0.8"]);
+    assert_says(&both[1], &["wide.creature.ron:3: waves: ", "0.9 together"]);
+    let hasty = warnings(&format!("{calm}, \"clock.dt\": 0.7"));
+    assert_eq!(hasty.len(), 1, "{hasty:?}");
+    assert_says(&hasty[0], &["worm.creature.ron:", "waves[0].period: 12 is less than 20 steps of 0.7"]);
+}
+
+#[test]
+fn waves_that_are_shorter_than_steps_are_warned_of() {
+    let (_folder, path) = file("hasty.creature.ron", STRAND.replacen("period: 60", "period: 1e-3", 1));
+    let scene = scenes::load(name(&path)).unwrap();
+    assert_eq!(scene.warnings.len(), 1);
+    assert_says(&scene.warnings[0], &["hasty.creature.ron:3: waves[0].period: 0.001 is less than 20 steps of 0.0005"]);
+}
+
+#[test]
 fn an_animal_inside_the_ground_is_refused() {
     let scene = |ground: &str, at: &str| {
         SCENE_TEXT

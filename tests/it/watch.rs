@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use bevy::{math::DVec3, prelude::*};
 use wriggle::{
-    body::{Ground, Particles, Spring, SpringId, Springs, Surface, Terrain},
+    body::{Ground, Muscle, Muscles, Particles, Spring, SpringId, Springs, Surface, Terrain, TravelingWaves},
     creatures::Pose,
     mechanics::integrators::Method,
-    physics::{BodyFrozen, BodyInverted, Frozen, Restart},
+    physics::{BodyFrozen, BodyInverted, Frozen, Restart, WavesCut},
 };
 
 use crate::{
@@ -182,6 +182,10 @@ fn a_particle_without_springs_is_frozen_when_it_is_not_finite() {
     assert!(particles(&app, body).positions().all(|x| x.is_finite()));
 }
 
+fn told_of_inversion(app: &mut App) -> Vec<String> {
+    app.world_mut().resource_mut::<Messages<BodyInverted>>().drain().map(|told| told.text).collect()
+}
+
 #[test]
 fn a_worm_that_is_squeezed_inside_out_is_told_of_once() {
     let told = |wall: f64| {
@@ -197,7 +201,7 @@ fn a_worm_that_is_squeezed_inside_out_is_told_of_once() {
         let mut texts = Vec::new();
         for _ in 0..42 {
             app.update();
-            texts.extend(app.world_mut().resource_mut::<Messages<BodyInverted>>().drain().map(|told| told.text));
+            texts.extend(told_of_inversion(&mut app));
         }
         texts
     };
@@ -205,4 +209,55 @@ fn a_worm_that_is_squeezed_inside_out_is_told_of_once() {
     assert_eq!(told(1000.0), [""; 0]);
     let near = told(18.0);
     assert!(near.len() == 1 && near[0].contains(" is inside out at step "), "{near:?}");
+}
+
+#[test]
+fn a_fold_that_lasts_for_a_part_of_a_cycle_is_told_of_once_and_again_after_a_restart() {
+    let cliff = Surface::Cliff { edge: 4.0, radius: 2.0, drop: Some(8.0) };
+    let worm = Animal::worm().with(|worm| {
+        (worm.dt, worm.gravity) = (0.05, 0.1);
+        worm.ground = Some(Ground::Terrain(Arc::new(Terrain::new([cliff]).unwrap())));
+        worm.pose = Pose { at: DVec3::X * -6.0, ..Pose::default() };
+    });
+    let (mut app, body) = worm.app();
+    for _ in 0..2 {
+        let mut texts = Vec::new();
+        let mut inverted = 0;
+        while app.world().resource::<wriggle::physics::Clock>().time() < 100.0 {
+            app.update();
+            texts.extend(told_of_inversion(&mut app));
+            let strand = crate::animal::strand(&app, body);
+            let volume = |segment| wriggle::mechanics::metrics::cell_volume(particles(&app, body), strand, segment);
+            inverted += usize::from((0..strand.segments()).any(|segment| volume(segment) < 0.0));
+        }
+        assert!(inverted > 0 && texts.len() == 1, "{inverted} samples: {texts:?}");
+        app.world_mut().write_message(Restart);
+        app.world_mut().run_schedule(PreUpdate);
+    }
+}
+
+#[test]
+fn waves_that_come_to_be_cut_are_told_of_once() {
+    fn told(app: &mut App) -> Vec<String> {
+        app.update();
+        app.world_mut().resource_mut::<Messages<WavesCut>>().drain().map(|told| told.text).collect()
+    }
+    let mut app = stepping_app(0.03, 10);
+    let worm = Animal::worm().spawn(app.world_mut());
+    let garden = app.world_mut().spawn((Name::new("garden"), Worm::GARDEN.body())).id();
+    assert_eq!(told(&mut app), [""; 0]);
+    // The wave takes 0.3.
+    for (steering, cut) in [(0.5, false), (0.7, true), (-0.9, false), (0.0, false), (-0.7, true)] {
+        app.world_mut().get_mut::<TravelingWaves>(worm).unwrap().set_steering(steering).unwrap();
+        let texts = told(&mut app);
+        let said =
+            texts.iter().any(|text| text.contains("waves: their amplitudes and the steering come to 1 together"));
+        assert_eq!((said, texts.len()), (cut, usize::from(cut)), "{steering}: {texts:?}");
+    }
+    let mut muscles = app.world_mut().get_mut::<Muscles>(garden).unwrap();
+    let wide = Muscle { amplitude: 0.9, ..muscles.get(1).unwrap() };
+    muscles.set(1, wide, 0.0).unwrap();
+    let texts = told(&mut app);
+    assert!(texts.len() == 1 && texts[0].starts_with("garden: springs[1].muscle.amplitude: 0.9 is above"), "{texts:?}");
+    assert_eq!(told(&mut app), [""; 0]);
 }

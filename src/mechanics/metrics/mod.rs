@@ -10,6 +10,6 @@ mod pose;
 pub use block::BlockShape;
 pub use gait::{Gait, GaitMetrics, SAMPLES_A_CYCLE};
 pub use pose::{
-    bend, cell_volume, heading, is_lifted, length_at_rest, section_center, section_width, segment_length, spine_vector,
-    strains,
+    bend, cell_volume, heading, inverted_segment, is_lifted, length_at_rest, section_center, section_width,
+    segment_length, spine_vector, strains,
 };

@@ -64,6 +64,18 @@ pub fn cell_volume(particles: &Particles, strand: Strand, segment: usize) -> f64
     hexahedron_volume(|i| corner(particles, strand, segment + i / 4, i % 4))
 }
 
+/// The first segment that is inside out, with a [volume](cell_volume) below 0. Every mass is read once, so that a strand can be asked after every tick.
+pub fn inverted_segment(particles: &Particles, strand: Strand) -> Option<usize> {
+    let corners = |section| core::array::from_fn::<_, 4, _>(|c| corner(particles, strand, section, c));
+    let mut behind = corners(0);
+    (0..strand.segments()).find(|&segment| {
+        let ahead = corners(segment + 1);
+        let volume = hexahedron_volume(|i| if i < 4 { behind[i] } else { ahead[i - 4] });
+        behind = ahead;
+        volume < 0.0
+    })
+}
+
 /// The volume of a body with the corners of a cube: those of one face in order round it, then those across from them.
 pub(super) fn hexahedron_volume(at: impl Fn(usize) -> DVec3) -> f64 {
     let origin = at(0);
