@@ -6,10 +6,11 @@ use bevy::{ecs::prelude::*, math::DVec2, prelude::ReflectComponent, reflect::Ref
 
 use crate::{
     body::{
-        BodyError, Guidance, LEAST_REST_FRACTION, Requirement, Strand, TravelingWave, TravelingWaves, WaveKind, check,
+        BodyError, Ground, Guidance, LEAST_REST_FRACTION, Requirement, Strand, TravelingWave, TravelingWaves, WaveKind,
+        check,
     },
     mechanics::{
-        BodyParts, Timeline,
+        BodyParts, Timeline, ground_grip,
         metrics::{length_at_rest, section_center},
     },
 };
@@ -23,9 +24,10 @@ const LOOKS_A_CYCLE: usize = 12;
 /// Animals that crawl or wind are steered by the offset b of their waves; a worm or a caterpillar skids unless it has some side grip, 1 or so. A sidewinder (a
 /// lateral and a vertical wave, the one a quarter of a cycle ahead of the other, and no side grip) rolls along to one side of its body, and to the other where the
 /// sign of that lead is the other: it nears a target by alternating the sign. On the way from one to the other there is a moment without vertical wave, in
-/// which it winds straight on; where it has to turn round it stays there, and turns by a little offset.
+/// which it winds straight on; where it has to turn round it stays there, and turns by a little offset. Where the ground grips under most of its masses it goes
+/// straight on as a snake does; steered, it lays its vertical wave down there, which would curl it up, and turns as a snake.
 ///
-/// A strand on its way to a target looks where it is every twelfth of a cycle, at steps that are multiples of a number of steps, and within a tick where
+/// A strand on its way to a target, or to a side of a ground with patches, looks where it is every twelfth of a cycle, at steps that are multiples of a number of steps, and within a tick where
 /// they fall there. What it does is therefore a function of the steps alone, the same at any frame rate and time scale. A command is obeyed at the first step after
 /// it. A restart forgets it, and no file has it.
 #[derive(Clone, Component, Debug, Default, PartialEq, Reflect)]
@@ -142,7 +144,7 @@ impl Steer {
 
     /// Decides, before a step, if it is time to. Gives back before which step it wants to look again, if it does.
     pub(super) fn look(&mut self, body: &BodyParts<'_>, timeline: Timeline, step: u64) -> Option<u64> {
-        if !self.fresh && !self.is_on_its_way() {
+        if !self.fresh && !self.goes_on_looking(body) {
             return None;
         }
         let walker = Walker::of(body)?;
@@ -151,7 +153,13 @@ impl Steer {
             self.fresh = false;
             self.decide(&walker, timeline.time_at(step));
         }
-        self.is_on_its_way().then(|| (step / interval + 1) * interval)
+        self.goes_on_looking(body).then(|| (step / interval + 1) * interval)
+    }
+
+    /// Whether what it does depends on where it comes to.
+    fn goes_on_looking(&self, body: &BodyParts<'_>) -> bool {
+        let aside = matches!(self.course, Course::Side(_)) && !self.stopped;
+        self.is_on_its_way() || (aside && has_patches(body))
     }
 
     fn is_on_its_way(&self) -> bool {
@@ -162,7 +170,7 @@ impl Steer {
         let own = Wish { b: walker.waves.steering(), lift: 1.0 };
         let wish = match (self.course, walker.leads_right) {
             (Course::Own, _) => own,
-            (Course::Side(side), None) => Wish { b: side * walker.most_turn(), lift: 1.0 },
+            (Course::Side(side), None) => Wish { b: side * walker.most_turn(), lift: walker.lift },
             (Course::Side(side), Some(leads_right)) => Wish { b: own.b, lift: if leads_right { side } else { -side } },
             (Course::Target(target), _) => self.wish_for(target, walker),
         };
@@ -188,12 +196,14 @@ impl Steer {
             self.arrived |= distance < Self::ROLLING_ARRIVAL;
             return self.rolling.wish(way, walker, leads_right);
         }
+        // Where it came from as a snake says nothing of where it rolls.
+        self.rolling = Rolling::default();
         self.arrived |= distance < Self::ARRIVAL;
         let off = angle(walker.ahead, way);
         // A target within the circle on which it turns would be circled for ever: it first leaves it behind.
         let within = off.abs() > FRAC_PI_3 && distance < 2.0 * CIRCLE * libm::sin(off.abs());
         let side = if within { 0.0 } else { (off / FULL_TURN).clamp(-1.0, 1.0) };
-        Wish { b: side * walker.most_turn(), lift: 1.0 }
+        Wish { b: side * walker.most_turn(), lift: walker.lift }
     }
 }
 
@@ -261,22 +271,25 @@ struct Walker<'a> {
     center: DVec2,
     /// Which way it points.
     ahead: DVec2,
-    /// Of a sidewinder, whether it rolls to the right with its waves as they are.
+    /// Of a sidewinder where nothing grips, whether it rolls to the right with its waves as they are.
     leads_right: Option<bool>,
+    /// The factor of the vertical waves while it is steered by b.
+    lift: f64,
 }
 
 impl<'a> Walker<'a> {
     fn of(body: &BodyParts<'a>) -> Option<Self> {
         let (strand, waves) = (body.strand?, body.waves?);
         let center = body.particles.center();
-        let grips = body.friction.is_some_and(|friction| friction.grip() > 0.0);
+        let (leads_right, grips) = (leads_right(waves), grips(body));
         Some(Self {
             waves,
             period: waves.longest_period()?,
             length: length_at_rest(body.springs, strand),
             center: DVec2::new(center.x, center.z),
             ahead: ahead(body, strand),
-            leads_right: if grips { None } else { leads_right(waves) },
+            leads_right: leads_right.filter(|_| !grips),
+            lift: if leads_right.is_some() { 0.0 } else { 1.0 },
         })
     }
 
@@ -285,6 +298,18 @@ impl<'a> Walker<'a> {
         let waves: f64 = self.waves.iter().map(|wave| wave.amplitude).sum();
         (1.0 - LEAST_REST_FRACTION - waves).clamp(0.0, Steer::MOST_TURN)
     }
+}
+
+fn has_patches(body: &BodyParts<'_>) -> bool {
+    matches!(body.ground, Some(Ground::Terrain(terrain)) if !terrain.patches().is_empty())
+}
+
+/// Whether most of the masses of a body are where they have a side grip, or are above it: what is lifted comes down there.
+fn grips(body: &BodyParts<'_>) -> bool {
+    let own = body.friction.map_or(0.0, |friction| friction.grip());
+    let Some(ground) = body.ground.filter(|_| body.friction.is_some() && has_patches(body)) else { return own > 0.0 };
+    let gripped = body.particles.positions().filter(|&position| ground_grip(ground, position, own) > 0.0).count();
+    2 * gripped > body.particles.len()
 }
 
 /// Which way a strand points: to its head from the section that is one wave behind it, as both sway alike. Without a lateral wave, from its tail.

@@ -1,9 +1,16 @@
 //! Animals go where they are sent, and stop where they are told to.
 
-use bevy::{math::DVec2, prelude::*};
+use std::sync::Arc;
+
+use bevy::{
+    math::{DVec2, DVec3},
+    prelude::*,
+};
 use wriggle::{
+    body::{Ground, Patch, Surface, Terrain},
     creatures::Pose,
     physics::{Clock, Restart, Steer},
+    scenes::{self, SceneBodies},
 };
 
 use crate::{
@@ -35,9 +42,12 @@ fn steered() -> [Animal; 4] {
     ]
 }
 
+/// Where each animal is sent that is steered, in degrees to its right.
+const EACH: [f64; 3] = [0.0, 60.0, -60.0];
+
 /// Sends an animal at rest three body lengths away at some angles. It is there within so many cycles, and stays.
-fn reaches(animal: &Animal, within: usize, part: f64) {
-    for degrees in [0.0, 60.0, -60.0] {
+fn reaches(animal: &Animal, at: &[f64], within: usize, part: f64) {
+    for &degrees in at {
         let (mut app, body) = animal.app();
         let target = away(animal, 3.0, degrees);
         let mut ran = Ran::start(&mut app, body);
@@ -62,22 +72,22 @@ fn reaches(animal: &Animal, within: usize, part: f64) {
 
 #[test]
 fn the_worm_reaches_its_target() {
-    reaches(&steered()[0], 32, 0.3);
+    reaches(&steered()[0], &EACH, 32, 0.3);
 }
 
 #[test]
 fn the_snake_reaches_its_target() {
-    reaches(&steered()[1], 9, 0.3);
+    reaches(&steered()[1], &EACH, 9, 0.3);
 }
 
 #[test]
 fn the_caterpillar_reaches_its_target() {
-    reaches(&steered()[2], 17, 0.3);
+    reaches(&steered()[2], &EACH, 17, 0.3);
 }
 
 #[test]
 fn the_sidewinder_nears_its_target_by_alternating_sides() {
-    reaches(&steered()[3], 24, 0.5);
+    reaches(&steered()[3], &EACH, 24, 0.5);
 }
 
 #[test]
@@ -111,6 +121,61 @@ fn a_side_is_a_side() {
         let (left, right) = (go(-2.0), go(1.0));
         assert!(right.y > 0.5 && left.y < -0.5, "period {}: goes to {left} and {right}", animal.period());
     }
+}
+
+/// A sidewinder on grass up to a place on x, as in the scene `sand`.
+fn on_grass(to: f64) -> Animal {
+    let grass = Patch::Box { from: (-30.0, -60.0), to: (to, 60.0), grip: 10.0 };
+    let terrain = Terrain::new([Surface::Floor { height: 0.0 }]).unwrap().with_patches([grass]).unwrap();
+    Animal::sidewinder().with(|snake| snake.ground = Some(Ground::Terrain(Arc::new(terrain))))
+}
+
+#[test]
+fn on_the_grass_of_the_sand_the_snake_turns_to_the_side_that_it_is_told() {
+    for side in [-1.0, 1.0] {
+        let mut app = stepping_app(0.05, 8);
+        scenes::open(app.world_mut(), scenes::load("sand").unwrap()).unwrap();
+        let body = app.world().resource::<SceneBodies>().0[0];
+        let mut clock = app.world_mut().resource_mut::<Clock>();
+        clock.set_dt(0.05).unwrap();
+        clock.set_steps_per_tick(8);
+        steer(&mut app, body).turn(side).unwrap();
+        let mut ran = Ran::start(&mut app, body);
+        ran.go_on(&mut app, 3);
+        let (turn, middle) = (ran.metrics().turn, middle(&app, body));
+        println!("side {side}: turns {turn}° a cycle, and is at {middle}");
+        assert!(middle.x < 28.0, "it has left the grass, at {middle}");
+        assert!(side * turn > 16.0, "side {side}: turns {turn}° a cycle");
+    }
+}
+
+#[test]
+fn on_grass_a_sidewinder_reaches_targets_that_are_a_little_aside() {
+    reaches(&on_grass(90.0), &[-20.0, 20.0, -60.0, 60.0], 9, 0.2);
+}
+
+#[test]
+fn from_grass_to_sand_a_sidewinder_goes_on_to_its_side_in_another_way_with_the_same_bits_whatever_the_ticks() {
+    let run = |steps: u64| {
+        let animal = on_grass(30.0).with(|snake| snake.pose = Pose { at: DVec3::X * 14.0, ..Pose::default() });
+        let mut app = stepping_app(animal.dt, steps);
+        let body = animal.spawn(app.world_mut());
+        steer(&mut app, body).turn(1.0).unwrap();
+        while app.world().resource::<Clock>().step() < 1600 {
+            app.update();
+        }
+        let guidance = steer(&mut app, body).guidance();
+        assert!(guidance.turn_at(80.0) > 0.09 && guidance.lift_at(80.0) == 0.0, "on grass: {guidance:?}");
+        while app.world().resource::<Clock>().step() < 6400 {
+            app.update();
+        }
+        let guidance = steer(&mut app, body).guidance();
+        assert!(middle(&app, body).x > 30.0, "it is on sand");
+        // Its own waves roll it to the left.
+        assert!(guidance.turn_at(320.0) == 0.0 && guidance.lift_at(320.0) == -1.0, "on sand: {guidance:?}");
+        bits(particles(&app, body))
+    };
+    assert_eq!(run(64), run(1));
 }
 
 /// The bits of animals on their ways to targets after 4800 steps, by ticks of so many steps.
