@@ -1,8 +1,8 @@
 //! Miller's animals as tests run them.
 
-use bevy::{ecs::system::EntityCommand, math::DVec3, prelude::*};
+use bevy::{ecs::system::EntityCommand, prelude::*};
 use wriggle::{
-    body::{Gravity, Ground, Strand},
+    body::{Gravity, Ground, Particles, Strand},
     creatures::{
         Creature, Friction, Plan, Pose, StrandPlan,
         library::{self, CREATURE},
@@ -106,34 +106,33 @@ impl Animal {
 pub struct Ran {
     pub body: Entity,
     pub gait: Gait,
-    /// Of all masses and samples, the least and the largest coordinates.
-    pub least: DVec3,
-    pub most: DVec3,
 }
 
 impl Ran {
     pub fn start(app: &mut App, body: Entity) -> Self {
         app.world_mut().run_schedule(PreUpdate);
         let gait = Gait::new(&body_parts(app.world().entity(body)).unwrap()).unwrap();
-        Self { body, gait, least: DVec3::INFINITY, most: DVec3::NEG_INFINITY }
+        Self { body, gait }
     }
 
-    fn look(&mut self, app: &App) {
+    fn look(&mut self, app: &App, see: &mut impl FnMut(&Particles)) {
         let clock = app.world().resource::<Clock>();
         let parts = body_parts(app.world().entity(self.body)).unwrap();
         self.gait.sample(&parts, clock.time(), clock.dt());
-        for position in parts.particles.positions() {
-            self.least = self.least.min(position);
-            self.most = self.most.max(position);
-        }
+        see(parts.particles);
     }
 
     pub fn go_on(&mut self, app: &mut App, cycles: usize) {
-        self.look(app);
+        self.go_on_seeing(app, cycles, |_| {});
+    }
+
+    /// Goes on for so many cycles, and shows its particles at every sample.
+    pub fn go_on_seeing(&mut self, app: &mut App, cycles: usize, mut see: impl FnMut(&Particles)) {
+        self.look(app, &mut see);
         let end = app.world().resource::<Clock>().time() + cycles as f64 * self.gait.period();
         while app.world().resource::<Clock>().time() < end - 1e-9 {
             app.update();
-            self.look(app);
+            self.look(app, &mut see);
         }
     }
 

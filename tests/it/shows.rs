@@ -129,9 +129,9 @@ fn nothing_gets_through_the_wall() {
     assert!(snake.smallest_cell > 0.7 && snake.distance > 1.0, "{snake:?}");
 }
 
-/// Runs every scene of strands but the one that is there to show it for so many cycles of its slowest wave, at its own step: no cell turns inside out.
+/// Runs every scene of strands for so many cycles of its slowest wave, at its own step: no cell turns inside out but of the one body that is there to show it.
 fn no_cell_inverts(cycles: f64) {
-    for scene in ["cliff", "foot", "meadow", "sand", "wall"] {
+    for scene in ["cliff", "foot", "meadow", "sand", "standing-waves", "wall"] {
         let mut app = stepping_app(1.0, 1);
         scenes::open(app.world_mut(), scenes::load(scene).unwrap()).unwrap();
         let bodies = app.world().resource::<SceneBodies>().0.clone();
@@ -144,6 +144,9 @@ fn no_cell_inverts(cycles: f64) {
         while app.world().resource::<Clock>().time() < cycles * period {
             app.update();
             for &body in &bodies {
+                if scene == "standing-waves" && app.world().get::<Name>(body).unwrap().as_str() == "undamped" {
+                    continue;
+                }
                 assert!(!app.world().entity(body).contains::<Frozen>(), "{scene}");
                 let Some(&strand) = app.world().get::<Strand>(body) else { continue };
                 for segment in 0..strand.segments() {

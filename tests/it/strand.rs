@@ -225,10 +225,10 @@ fn the_exact_flow_says_that_it_cannot() {
     assert!(frozen.reason.contains("not on an axis"), "{}", frozen.reason);
 }
 
-/// Where the masses are after one cycle.
-fn after_a_cycle(animal: &Animal) -> Vec<DVec3> {
+/// Where the masses are after so many cycles.
+fn after(cycles: f64, animal: &Animal) -> Vec<DVec3> {
     let (mut app, body) = animal.app();
-    run_until(&mut app, animal.period());
+    run_until(&mut app, cycles * animal.period());
     particles(&app, body).positions().collect()
 }
 
@@ -243,8 +243,9 @@ fn a_mirrored_animal_moves_in_the_mirror_image() {
         })
     };
     let steered = |animal: Animal| animal.with(|animal| animal.plan.steering = 0.03);
-    for animal in [steered(Animal::snake()), steered(Animal::worm()), Animal::sidewinder()] {
-        let (one, other) = (after_a_cycle(&animal), after_a_cycle(&mirrored(&animal)));
+    let caterpillar = Animal::shipped("caterpillar-steered", 0.1);
+    for animal in [steered(Animal::snake()), steered(Animal::worm()), steered(caterpillar), Animal::sidewinder()] {
+        let (one, other) = (after(3.0, &animal), after(3.0, &mirrored(&animal)));
         let aside = one.iter().map(|x| x.z.abs()).fold(0.0, f64::max);
         assert!(aside > 0.55, "the animal does go aside: {aside}");
         for (i, x) in one.iter().enumerate() {
@@ -258,9 +259,9 @@ fn a_mirrored_animal_moves_in_the_mirror_image() {
 #[test]
 fn turning_the_scene_turns_the_trajectories_with_it() {
     for animal in [Animal::worm(), Animal::snake(), Animal::caterpillar()] {
-        let straight = after_a_cycle(&animal);
+        let straight = after(1.0, &animal);
         for heading in [37.0, 90.0, -143.0] {
-            let turned = after_a_cycle(&animal.clone().with(|animal| animal.pose = Pose { heading, ..animal.pose }));
+            let turned = after(1.0, &animal.clone().with(|animal| animal.pose = Pose { heading, ..animal.pose }));
             let back = bevy::math::DQuat::from_rotation_y(f64::to_radians(heading));
             for (i, (x, y)) in straight.iter().zip(turned).enumerate() {
                 let off = (*x - back * y).length();
