@@ -10,18 +10,16 @@ pub(super) fn problem(text: &str, place: Position, error: &Error) -> String {
     match error {
         Error::MissingStructField { field, .. } => format!("the field `{field}` is missing; it has no default"),
         Error::DuplicateStructField { field, .. } => format!("the field `{field}` is given twice; give it once"),
-        Error::ExpectedDifferentStructName { expected, found } => other_struct(expected, found),
+        Error::ExpectedDifferentStructName { expected, found } => other_struct(expected, found, behind),
         Error::ExpectedFloat => refused(behind, "a number, such as 1.5"),
-        Error::ExpectedInteger => refused(behind, "a whole number, such as 3"),
+        Error::ExpectedInteger | Error::InvalidIntegerDigit { .. } => refused(behind, "a whole number, such as 3"),
         Error::IntegerOutOfBounds => out_of_bounds(before, behind),
         Error::ExpectedBoolean => refused(behind, "true or false"),
         Error::ExpectedString => refused(behind, "a text in quotes, such as \"worm\""),
         Error::ExpectedStringEnd => "a text begins here and does not end; close it with a quote".into(),
         Error::ExpectedArray => refused(behind, "a list in square brackets, such as [0, 1]"),
         Error::ExpectedMap => refused(behind, "a map in curly brackets, such as {\"worm.springs.stiffness\": 2}"),
-        Error::ExpectedStructLike | Error::ExpectedNamedStructLike(_) => {
-            refused(behind, "what belongs here in round brackets: ( … )")
-        }
+        Error::ExpectedStructLike | Error::ExpectedNamedStructLike(_) => no_brackets(behind),
         Error::ExpectedIdentifier | Error::SuggestRawIdentifier(_) => no_name(before, behind),
         Error::ExpectedMapColon => "a name and its value have a colon between them, such as `mass: 1`".into(),
         Error::ExpectedComma => no_comma(before, behind),
@@ -31,6 +29,7 @@ pub(super) fn problem(text: &str, place: Position, error: &Error) -> String {
             let wanted = expected.rsplit(' ').next().and_then(|size| size.parse::<usize>().ok());
             wanted.map_or_else(|| error.to_string(), |wanted| format!("{}; here {}", give(wanted), are(*found)))
         }
+        Error::TrailingCharacters => "all brackets are closed before this, and nothing may follow; take it away".into(),
         Error::Eof => UNCLOSED.into(),
         other => other.to_string(),
     }
@@ -73,7 +72,20 @@ fn number_before(text: &str) -> &str {
     &text[text.trim_end_matches(|c: char| c.is_ascii_digit() || "+-._".contains(c)).len()..]
 }
 
-fn other_struct(expected: &str, found: &str) -> String {
+/// Something else than an opening bracket, or its name.
+fn no_brackets(behind: &str) -> String {
+    let found = word(behind);
+    let field =
+        found.starts_with(char::is_alphabetic) && behind.trim_start()[found.len()..].trim_start().starts_with(':');
+    if field {
+        // The next field, where a list or brackets still go on.
+        return format!("a bracket before `{found}` is still open; close it");
+    }
+    refused(behind, "what belongs here in round brackets: ( … )")
+}
+
+/// Brackets of another name.
+fn other_struct(expected: &str, found: &str, behind: &str) -> String {
     let kind = |name: &str| {
         let opens = |opening: &str| opening.strip_prefix(name).is_some_and(|rest| rest.starts_with('('));
         [CREATURE, SCENE, ROAD].into_iter().find(|kind| opens(kind.opening))
@@ -86,7 +98,7 @@ fn other_struct(expected: &str, found: &str) -> String {
         (Some(expected), None) => {
             format!("`{found}` is not allowed; a {} file begins like `{}`", expected.what, expected.opening)
         }
-        _ => format!("`{found}` is not allowed; give what belongs here in round brackets: ( … )"),
+        _ => no_brackets(behind),
     }
 }
 
@@ -117,12 +129,11 @@ fn no_name(before: &str, behind: &str) -> String {
 /// Where a list or brackets go on without a comma.
 fn no_comma(before: &str, behind: &str) -> String {
     let (number, found) = (number_before(before), word(behind));
-    // Whole numbers are read up to their point or exponent.
-    let rest = found.strip_prefix(['.', 'e', 'E']).unwrap_or_default();
     if found.is_empty() {
         UNCLOSED.into()
-    } else if !number.is_empty() && rest.starts_with(|c: char| c.is_ascii_digit()) {
-        format!("{number}{found} is no whole number; give one without point and exponent")
+    } else if !number.is_empty() && found.starts_with('.') {
+        // Whole numbers are read up to their point.
+        format!("{number}{found} is no whole number; give one without a point")
     } else {
         format!("a comma or a closing bracket belongs here, and not `{found}`")
     }

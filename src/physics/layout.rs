@@ -124,7 +124,7 @@ fn retrace<const D: usize>(item: &mut Item<'_>, timeline: Timeline, steps: Range
             let reason = match explosion.spring {
                 Some(spring) => {
                     let before = model.explosion(&good, 0);
-                    too_long(&item.body(), spring, before.is_some_and(|before| before.spring == Some(spring)))
+                    too_long(&item.body(), spring, before.is_some_and(|before| before.spring.is_some()))
                 }
                 None => "it is not finite".into(),
             };
@@ -142,10 +142,14 @@ fn retrace<const D: usize>(item: &mut Item<'_>, timeline: Timeline, steps: Range
     item.take_torn(&model, 0);
 }
 
-/// What is said of a spring that is too long, and maybe was so before the step.
-fn too_long(body: &BodyParts<'_>, spring: usize, was: bool) -> String {
+/// What is said of a spring that is too long, where springs `were` so before the step or not.
+fn too_long(body: &BodyParts<'_>, spring: usize, were: bool) -> String {
     // Springs are counted in u32.
     let rest = body.springs.get(SpringId(spring as u32)).map_or(0.0, |spring| spring.rest_length);
-    let why = if was { "; it was so before, whatever dt is: its rest length is too small" } else { "" };
+    let why = if were {
+        ", and springs were so before this step: rest lengths are too small for the pose, whatever dt is"
+    } else {
+        ""
+    };
     format!("spring {spring} is longer than ten rest lengths of {rest}{why}")
 }
