@@ -80,7 +80,7 @@ fn ticks_change_no_bits() {
 #[test]
 fn frame_rates_time_scales_and_pauses_change_no_bits() {
     // All methods, on the axis and off it, in groups that fill lanes and groups that do not.
-    let run = |app| run_for(1000, app, worms(64));
+    let run = |app| run_for(600, app, worms(64));
     let expected = run(stepping_app(0.01, 1));
     for (frames, scale) in [(30.0, 3.0), (60.0, 3.0), (144.0, 3.0), (60.0, 25.0), (60.0, 0.7)] {
         let mut app = ticking_app(0.01, scale);

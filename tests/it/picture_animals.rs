@@ -37,7 +37,8 @@ fn scene(name: &str, time: f64) -> (Shot, Vec<(String, Vec<Vec2>)>) {
                 .chunks(4)
                 .map(|section| (section[0] + section[1]) * 0.4 + (section[2] + section[3]) * 0.1)
                 .collect(),
-            masses => masses.to_vec(),
+            // The ball of a mass lies on the ground that the mass stands on.
+            masses => masses.iter().map(|at| *at + 0.13 * Vec3::Y).collect(),
         };
         points.iter().filter_map(|&x| camera.world_to_viewport(&place, x).ok()).filter(inside).collect()
     };
