@@ -91,10 +91,9 @@ pub(super) fn template(options: &ExerciseOptions) -> Result<Answer, BodyError> {
     Ok(Answer {
         question: "1. Overview of the template and its kernel",
         paragraphs: vec![
-            "msd_kernel is the function that the template runs for every particle of the grid in every step: by the exercise's words it accelerates the particle \
-             towards the ground, y = 0, and no more. To it corresponds what is done here with a layer of the grid (mechanics::lattice, Model::step_lattice): the \
-             same step for every mass, which finds its neighbours by where they are in the grid. There a thread has a particle; here it has a slab of layers, \
-             eight masses at a time."
+            "msd_kernel is the template's step: by the exercise's words it accelerates all particles of a 3-D grid towards the ground, y = 0, and no more. To it \
+             corresponds what is done here with a layer of the grid (mechanics::lattice, Model::step_lattice): the same for every mass, whose neighbours are \
+             found by where they are in the grid, eight masses at a time, and slabs of layers side by side in threads."
                 .into(),
             "A step has four parts. First what pulls at each mass: gravity, and the springs to its neighbours. The springs of a layer, and those to the next, are \
              computed once, and each acts on both of its ends. Then the velocities, then the positions, and last the floor: what came to be below y = 0 is put \
