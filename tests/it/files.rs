@@ -289,7 +289,7 @@ fn what_would_be_right_is_said_of_values_of_another_form() {
         assert!(problem.contains(says), "{bad}: `{says}` is missing in: {problem}");
     }
     let jelly = "Creature(version: 1, body: Jelly(size: (2.5, 5, 5), neighbours: (edges: (stiffness: 9))))";
-    assert_says(&creature_problem(jelly), &["size: 2.5 is no whole number"]);
+    assert_says(&creature_problem(jelly), &["size: (2.5, 5, 5) is not allowed; give whole numbers from 1"]);
     for (good, bad, says) in [
         ("seed: 7", "seed: -3", "seed: -3 is not allowed; give a whole number, 0 or more"),
         ("seed: 7", "seed: 99999999999999999999", "99999999999999999999 is too large; give a smaller whole number"),
