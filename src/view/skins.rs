@@ -112,7 +112,8 @@ fn dress(
             (Look::Strand(skin), Some(&strand), _) => {
                 strand::dress(body, strand, skin, &mut kits.strand, &mut cloth, &mut commands)
             }
-            (Look::Jelly, _, Some(&block)) if jelly::has_surface(block) => {
+            // Masses that no spring holds together have no skin.
+            (Look::Jelly, _, Some(&block)) if held > 0 && jelly::has_surface(block) => {
                 jelly::dress(body, block, &mut cloth, &mut commands)
             }
             (Look::GardenWorm, ..) if particles >= 2 => {
