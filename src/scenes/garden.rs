@@ -2,11 +2,8 @@
 
 use crate::physics::ShownLap;
 
-/// Where the mouth of the burrow is, from which the worm comes out.
+/// Where the mouth of the burrow is, from which the worm comes out; its tunnel reaches back to x = −5.
 pub const BURROW_MOUTH: f64 = -1.3;
-
-/// How far its tunnel reaches back.
-pub const BURROW_END: f64 = -5.0;
 
 /// Where the front of the worm's house is; its door faces −x, and the inside reaches to x = 14.5, so that the whole worm fits.
 pub const DOOR: f64 = 10.0;
