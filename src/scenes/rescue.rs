@@ -1,8 +1,8 @@
-//! Nobody who plays is left with a worm that is stuck: one of a garden that was turned inside out or thrown off its path begins again in its burrow.
+//! Nobody who plays is left with a worm that is stuck: one of a garden that was turned inside out or thrown off its path begins again where it began.
 
 use bevy::{log::warn, prelude::*};
 
-use super::{Runner, garden};
+use super::Runner;
 use crate::{
     body::{Particles, Pull},
     physics::{Frozen, PhysicsSystems, Previous, ShownLap, StartState},
@@ -10,10 +10,10 @@ use crate::{
 
 /// For how many seconds of the app's time a worm may be lost before it is put back.
 const PATIENCE: f32 = 4.0;
-/// How far a worm may be beside or above its path, or behind the end of its burrow, in lengths.
+/// How far a worm may be beside or above its path, or behind where it began, in lengths.
 const ASTRAY: f64 = 5.0;
 
-/// Puts lost worms back into their burrow. Only for apps that are played: in a run or a picture what is lost stays lost, so that its bits are those
+/// Puts lost worms back to where they began. Only for apps that are played: in a run or a picture what is lost stays lost, so that its bits are those
 /// of the physics alone.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct RescuePlugin;
@@ -71,7 +71,7 @@ fn rescue(time: Res<Time>, mut worms: Worms, mut messages: MessageWriter<BodyRes
         start.put_back(&mut particles, &mut previous);
         commands.entity(body).remove::<Lost>();
         let name = name.map_or("a worm", Name::as_str);
-        let text = format!("{name}: it {trouble}, and begins again in its burrow");
+        let text = format!("{name}: it {trouble}, and begins again");
         warn!("{text}");
         messages.write(BodyRescued { body, text });
     }
@@ -88,7 +88,7 @@ fn trouble(now: &Particles, start: &Particles) -> Option<&'static str> {
     let [x, y, z] = now.position_columns().each_ref().map(Vec::as_slice);
     let astray = |column: &[f64], from: f64| column.iter().any(|value| (value - from).abs() > ASTRAY);
     let from = start.position_columns();
-    if astray(y, from[1][0]) || astray(z, from[2][0]) || x.iter().any(|x| *x < garden::BURROW_END - ASTRAY) {
+    if astray(y, from[1][0]) || astray(z, from[2][0]) || x.iter().any(|x| *x < from[0][0] - ASTRAY) {
         return Some("left the garden");
     }
     (!ascends(x)).then_some("was turned inside out")

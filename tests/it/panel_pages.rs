@@ -201,7 +201,7 @@ fn lose(app: &mut App, worm: Entity, place: impl Fn(usize, bevy::math::DVec3) ->
 }
 
 #[test]
-fn a_worm_that_play_has_left_stuck_begins_again_in_its_burrow() {
+fn a_worm_that_play_has_left_stuck_begins_again_where_it_began() {
     use bevy::math::DVec3;
     let (mut app, worm) = garden();
     let start = xs(&app, worm);
