@@ -158,7 +158,7 @@ impl Quantity {
                     Neighbours::Faces => ("faces.rest_length", "rest length L of springs across the faces of cells"),
                     Neighbours::Cubes => ("cubes.rest_length", "rest length L of springs across cells"),
                 };
-                (Group::Block, field, Positive, (0.1, 4.0), "length", help)
+                (Group::Block, field, Positive, (0.2, 4.0), "length", help)
             }
             Self::Six(six) => six.facts(),
         }
