@@ -51,4 +51,4 @@ pub use rules::{Contraction, Counter, Free, Leg, Rule, Rules, Weight};
 pub use springs::{Spring, SpringId, Springs};
 pub use strand::{Strand, StrandSpring};
 pub use tearing::Tearing;
-pub use waves::{TravelingWave, TravelingWaves, WaveDirection, WaveKind};
+pub use waves::{TravelingWave, TravelingWaves, WaveDirection, WaveKind, longest_period};

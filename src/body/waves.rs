@@ -3,7 +3,7 @@
 use bevy::{ecs::prelude::*, prelude::ReflectComponent, reflect::Reflect};
 use serde::{Deserialize, Serialize};
 
-use super::{BodyError, LEAST_REST_FRACTION, Requirement, Wave, check, guidance::Ramp, muscles::Epoch};
+use super::{BodyError, LEAST_REST_FRACTION, Muscles, Requirement, Wave, check, guidance::Ramp, muscles::Epoch};
 
 /// Which sides of a segment a wave makes longer and shorter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Reflect, Serialize, Deserialize)]
@@ -236,4 +236,10 @@ impl TravelingWaves {
         let cycle = self.longest_period().unwrap_or(0.0);
         self.activity = Ramp::towards(from, self.activity.to, time, self.ramp * cycle);
     }
+}
+
+/// The longest period of all muscles and waves of a body, or nothing where it has none.
+pub fn longest_period(muscles: Option<&Muscles>, waves: Option<&TravelingWaves>) -> Option<f64> {
+    let muscles = muscles.into_iter().flat_map(Muscles::iter).map(|muscle| muscle.period);
+    muscles.chain(waves.and_then(TravelingWaves::longest_period)).reduce(f64::max)
 }

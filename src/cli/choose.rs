@@ -7,7 +7,6 @@ use clap::Args;
 use super::{CliError, Outcome, list::write_table, progress::progress};
 use crate::{
     lab::{Cache, Candidate, Choice, Problem, Search, Truth, Unit, choose as find},
-    mechanics::integrators::StickRule,
     scenes,
 };
 
@@ -90,15 +89,10 @@ fn row(candidate: &Candidate, found: &Choice) -> Vec<String> {
         Some(error) => (format!("{error:.3e}"), format!("{:.3}", error / found.budget)),
         None => ("blows up".into(), "-".into()),
     };
-    let stick = match setting.stick {
-        StickRule::InStages => "in stages",
-        StickRule::EndOfStep => "at the end",
-        StickRule::Located => "located",
-    };
     let mark = if candidate == &found.choice { "* " } else { "  " };
     vec![
         format!("{mark}{}", setting.method.name()),
-        stick.into(),
+        setting.stick.words().into(),
         setting.dt.to_string(),
         format!("{cost:.0}"),
         error,

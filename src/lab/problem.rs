@@ -5,7 +5,7 @@ use bevy::{ecs::prelude::*, math::DVec3, prelude::Name};
 use crate::{
     body::{
         CoulombFriction, Gravity, Ground, Guidance, Lattice, MassDamping, Muscles, Particles, SpineFriction, Springs,
-        Strand, Tearing, TravelingWaves,
+        Strand, Tearing, TravelingWaves, longest_period,
     },
     creatures::FileError,
     mechanics::{
@@ -114,9 +114,7 @@ impl ProblemBody {
 
     /// The longest period of a muscle or a wave; nothing where it has none.
     pub fn period(&self) -> Option<f64> {
-        let muscles = self.muscles.iter().flat_map(Muscles::iter).map(|muscle| muscle.period);
-        let waves = self.waves.as_ref().and_then(TravelingWaves::longest_period);
-        muscles.chain(waves).reduce(f64::max)
+        longest_period(self.muscles.as_ref(), self.waves.as_ref())
     }
 
     /// The length of the body: the largest distance between two of its particles at the start; 1 where all are in one place.

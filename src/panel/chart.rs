@@ -89,7 +89,7 @@ fn draw(ui: &mut egui::Ui, chart: &WorkPrecision, settings: &Settings) {
             if stick != StickRule::InStages {
                 let index = methods(chart).iter().position(|method| *method == settings.method).unwrap_or_default();
                 let line = curve(chart, settings.method, stick);
-                let name = format!("{}, {}", settings.method.name(), words(stick));
+                let name = format!("{}, {}", settings.method.name(), stick.words());
                 let color = SERIES[index % SERIES.len()];
                 plot.line(Line::new(name, line).color(color).width(1.2).style(LineStyle::dotted_dense()));
             }
@@ -135,14 +135,6 @@ fn runs(chart: &WorkPrecision, method: Method, stick: StickRule) -> impl Iterato
 /// The stick rule under which a method was measured that stands for `stick`: where it makes no difference, only that in stages was.
 fn rule(chart: &WorkPrecision, method: Method, stick: StickRule) -> StickRule {
     if runs(chart, method, stick).next().is_some() { stick } else { StickRule::InStages }
-}
-
-fn words(stick: StickRule) -> &'static str {
-    match stick {
-        StickRule::InStages => "in stages",
-        StickRule::EndOfStep => "at end",
-        StickRule::Located => "located",
-    }
 }
 
 /// Where the present setting stands: between the measured steps of its method and stick rule, along straight lines of the chart; beyond them, at their

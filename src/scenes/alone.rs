@@ -3,10 +3,7 @@
 use bevy::math::DVec3;
 
 use super::Camera;
-use crate::{
-    body::{Muscles, TravelingWaves},
-    creatures::Body,
-};
+use crate::{body::longest_period, creatures::Body};
 
 /// How far away a camera stands of what it looks at, in radii of that: it fills most of the height of a picture.
 const DISTANCE: f64 = 3.2;
@@ -17,23 +14,21 @@ const CYCLE: f64 = 2.5;
 
 /// A camera that sees a creature from where it starts, down to the ground where it has one.
 pub(super) fn camera(body: &Body, on_ground: bool) -> Camera {
-    let Camera::Orbit { target, distance, pitch, yaw } = Camera::default();
     let bounds = body.particles.positions().fold(None, |bounds: Option<(DVec3, DVec3)>, at| {
         let (low, high) = bounds.unwrap_or((at, at));
         Some((low.min(at), high.max(at)))
     });
-    let Some((mut low, high)) = bounds else { return Camera::Orbit { target, distance, pitch, yaw } };
+    let Some((mut low, high)) = bounds else { return Camera::default() };
     if on_ground {
         low.y = low.y.min(0.0);
     }
-    let target = (0.5 * (low + high)).into();
+    let Camera::Orbit { pitch, yaw, .. } = Camera::default();
     let distance = (DISTANCE * 0.5 * low.distance(high)).max(NEAREST);
-    Camera::Orbit { target, distance, pitch, yaw }
+    Camera::Orbit { target: (0.5 * (low + high)).into(), distance, pitch, yaw }
 }
 
 /// How much simulated time a second shows of a creature.
 pub(super) fn time_scale(body: &Body) -> f64 {
-    let muscles = body.muscles.iter().flat_map(Muscles::iter).map(|muscle| muscle.period);
-    let waves = body.waves.as_ref().and_then(TravelingWaves::longest_period);
-    muscles.chain(waves).reduce(f64::max).map_or(1.0, |period| (period / CYCLE).clamp(0.01, 100.0))
+    let period = longest_period(body.muscles.as_ref(), body.waves.as_ref());
+    period.map_or(1.0, |period| (period / CYCLE).clamp(0.01, 100.0))
 }

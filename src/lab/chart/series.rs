@@ -81,8 +81,7 @@ impl Series {
     pub fn name(&self) -> String {
         match self.stick {
             StickRule::InStages => self.method.name().into(),
-            StickRule::EndOfStep => format!("{}, friction at end", self.method.name()),
-            StickRule::Located => format!("{}, friction located", self.method.name()),
+            stick => format!("{}, friction {}", self.method.name(), stick.words()),
         }
     }
 

@@ -9,7 +9,10 @@ use super::{
 use crate::{
     body::{BodyError, MassDamping, Neighbours, ParticleId},
     creatures::JellyPlan,
-    lab::chart::{curves::Curves, short},
+    lab::{
+        IS_DEBUG_BUILD,
+        chart::{curves::Curves, short},
+    },
     mechanics::integrators::Method,
 };
 
@@ -46,7 +49,7 @@ fn listed(words: &[&str]) -> String {
 
 /// What speeds were measured with.
 fn build() -> &'static str {
-    if cfg!(debug_assertions) { "; this is a debug build, whose speeds say little" } else { "" }
+    if IS_DEBUG_BUILD { "; this is a debug build, whose speeds say little" } else { "" }
 }
 
 /// When each layer of the template's block meets the floor and how fast, beside √(2h/g) and √(2gh).

@@ -3,7 +3,7 @@
 use bevy::math::DVec3;
 
 use crate::{
-    body::{Muscles, Particles, TravelingWaves},
+    body::{Muscles, Particles, TravelingWaves, longest_period},
     mechanics::{
         Advance, BodyParts, Model, State, Timeline, elastic_energy, kinetic_energy,
         linear::{Linear, bisect},
@@ -41,7 +41,7 @@ struct Outcome {
 pub fn scene_limit(body: &BodyParts<'_>, linearised: f64) -> Option<f64> {
     let rate = Linear::of(body)?.rate;
     // What nothing drives is tried up to steps in which its own oscillations are long over.
-    let period = period(body).unwrap_or(if rate > 0.0 { 1e3 / rate } else { 1.0 });
+    let period = longest_period(body.muscles, body.waves).unwrap_or(if rate > 0.0 { 1e3 / rate } else { 1.0 });
     let (mut dt, last, stride) = match linearised {
         0.0 => (1e-3 / rate, period, STRIDE * STRIDE),
         limit if limit.is_finite() => (0.5 * limit, 4.0 * limit, STRIDE),
@@ -88,7 +88,9 @@ pub(super) fn reason(body: &BodyParts<'_>, linearised: f64, explodes: f64) -> &'
                     false => "it falls and strikes the ground, which is no small disturbance",
                 }
             }
-            _ if period(body).is_none() => "it moves into poses and speeds that a small disturbance does not reach",
+            _ if longest_period(body.muscles, body.waves).is_none() => {
+                "it moves into poses and speeds that a small disturbance does not reach"
+            }
             _ => "muscles drive it into poses and speeds that a small disturbance does not reach",
         };
     }
@@ -103,18 +105,13 @@ pub(super) fn reason(body: &BodyParts<'_>, linearised: f64, explodes: f64) -> &'
     }
 }
 
-fn period(body: &BodyParts<'_>) -> Option<f64> {
-    let muscles = body.muscles.into_iter().flat_map(Muscles::iter).map(|muscle| muscle.period);
-    muscles.chain(body.waves.and_then(TravelingWaves::longest_period)).reduce(f64::max)
-}
-
 fn run(body: &BodyParts<'_>, dt: f64) -> Outcome {
     if body.on_axis() { run_in::<1>(body, dt) } else { run_in::<3>(body, dt) }
 }
 
 fn run_in<const D: usize>(body: &BodyParts<'_>, dt: f64) -> Outcome {
     let most = (MOST_STEPS / body.particles.len() as f64).max(LEAST_STEPS);
-    let steps = (CYCLES * period(body).unwrap_or(0.0) / dt).clamp(LEAST_STEPS, most) as u64;
+    let steps = (CYCLES * longest_period(body.muscles, body.waves).unwrap_or(0.0) / dt).clamp(LEAST_STEPS, most) as u64;
     let mut model = Model::<f64, D>::new(body, [], dt);
     let mut state = State::<f64, D>::new(body.particles.len());
     state.set_lane(0, body.particles);

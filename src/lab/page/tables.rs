@@ -3,13 +3,10 @@
 use core::fmt::Write;
 
 use super::escape;
-use crate::{
-    lab::{
-        Errors, Point, StiffnessStudy, Unit, WorkPrecision,
-        chart::{Series, error, short},
-        studied_methods,
-    },
-    mechanics::integrators::StickRule,
+use crate::lab::{
+    Errors, Point, StiffnessStudy, Unit, WorkPrecision,
+    chart::{Series, error, short},
+    studied_methods,
 };
 
 /// What each method needs to be good enough.
@@ -72,11 +69,7 @@ pub(super) fn all(body: &mut String, chart: &WorkPrecision) {
     );
     for point in &chart.points {
         let Point { setting, steps, evaluations, runs, seconds, median_seconds, errors } = point;
-        let stick = match setting.stick {
-            StickRule::InStages => "in stages",
-            StickRule::EndOfStep => "at end",
-            StickRule::Located => "located",
-        };
+        let stick = setting.stick.words();
         let errors = match errors {
             Some(errors) => {
                 let cell = |(i, (_, of)): (usize, &Column)| {

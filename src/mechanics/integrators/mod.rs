@@ -98,6 +98,15 @@ impl StickRule {
     /// Every rule, in the order in which they are shown.
     pub const ALL: [Self; 3] = [Self::InStages, Self::EndOfStep, Self::Located];
 
+    /// When friction acts, in words.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::InStages => "in stages",
+            Self::EndOfStep => "at end",
+            Self::Located => "located",
+        }
+    }
+
     /// Whether stages admit only what friction admits.
     pub(super) fn asks_in_stages(self) -> bool {
         self != Self::EndOfStep
