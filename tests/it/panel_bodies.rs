@@ -4,8 +4,9 @@ use bevy::{math::DVec3, prelude::*};
 use wriggle::{
     creatures::library,
     panel::{self, Settings, bridge, traces::observe},
-    physics::body_parts,
+    physics::{Steer, body_parts},
     scenes::{self, parameters},
+    view::Selected,
 };
 
 /// The world of a shipped scene.
@@ -80,4 +81,32 @@ fn bodies_that_are_set_together_get_the_same_value() {
     settings.request(&own, 30.0);
     bridge::apply(app.world_mut());
     assert_eq!(tilts(app.world_mut()).into_iter().filter(|tilt| *tilt == 30.0).count(), 1);
+}
+
+#[test]
+fn the_animal_that_is_led_and_the_body_that_is_shown_are_one() {
+    let mut app = App::new();
+    app.init_resource::<Settings>().init_resource::<bridge::Known>();
+    scenes::open(app.world_mut(), scenes::load("meadow").unwrap()).unwrap();
+    let bodies = app.world().resource::<scenes::SceneBodies>().0.clone();
+    for body in &bodies {
+        app.world_mut().entity_mut(*body).insert(Steer::default());
+    }
+    app.insert_resource(Selected(Some(bodies[2])));
+    bridge::read(app.world_mut());
+    let shown = |app: &App| app.world().resource::<Settings>().body().unwrap().entity;
+    let listed: Vec<_> = app.world().resource::<Settings>().bodies.iter().map(|body| body.entity).collect();
+    assert_eq!(listed, bodies, "in the order of the scene");
+    assert_eq!(shown(&app), bodies[2]);
+    // Another one is led, by Tab or the mouse.
+    app.insert_resource(Selected(Some(bodies[1])));
+    bridge::read(app.world_mut());
+    assert_eq!(shown(&app), bodies[1]);
+    // Another one is chosen in the panel.
+    app.world_mut().resource_mut::<Settings>().selected = 3;
+    bridge::read(app.world_mut());
+    assert_eq!((shown(&app), app.world().resource::<Selected>().0), (bodies[3], Some(bodies[3])));
+    // What belongs to nobody changes nothing.
+    bridge::read(app.world_mut());
+    assert_eq!((shown(&app), app.world().resource::<Selected>().0), (bodies[3], Some(bodies[3])));
 }
