@@ -1,7 +1,7 @@
 //! The player's hand: which animal is selected, where it is led with the arrow keys or a click on the ground, and marks that show both.
 
 use bevy::{ecs::system::SystemParam, math::DVec2, prelude::*, window::PrimaryWindow};
-use bevy_egui::{EguiContexts, EguiPostUpdateSet};
+use bevy_egui::{EguiContexts, EguiPostUpdateSet, egui::Key};
 
 use super::{
     camera::{PointerOnPanel, SceneCamera},
@@ -34,15 +34,12 @@ pub(super) fn plugin(app: &mut App) {
 
 /// Takes from a panel the focus that Tab has given it while there are animals that Tab chooses: all keys would go to its buttons from then on. Who goes
 /// from field to field with Tab keeps it.
-fn keep_keys(
-    keys: Res<ButtonInput<KeyCode>>,
-    selected: Res<Selected>,
-    mut in_field: Local<bool>,
-    mut contexts: EguiContexts,
-) {
+fn keep_keys(selected: Res<Selected>, mut in_field: Local<bool>, mut contexts: EguiContexts) {
     let Ok(context) = contexts.ctx_mut() else { return };
     let was_in_field = core::mem::replace(&mut *in_field, context.text_edit_focused());
-    if selected.0.is_some() && keys.just_pressed(KeyCode::Tab) && !was_in_field {
+    // What egui heard, which is also Tab again and again while it is held.
+    let tab = context.input(|input| input.key_pressed(Key::Tab));
+    if selected.0.is_some() && tab && !was_in_field {
         context.memory_mut(|memory| {
             if let Some(id) = memory.focused() {
                 memory.surrender_focus(id);
