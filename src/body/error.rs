@@ -77,3 +77,15 @@ pub enum BodyError {
 pub fn check(value: f64, requirement: Requirement, path: impl FnOnce() -> String) -> Result<f64, BodyError> {
     if requirement.admits(value) { Ok(value) } else { Err(BodyError::Value { path: path(), value, requirement }) }
 }
+
+/// Refuses a number above 0 that is so small that its inverse is infinite: of a mass or a period it is the inverse that is computed with.
+///
+/// # Errors
+/// [`BodyError::Inconsistent`] with the path that `path` makes, whose field is called `what`.
+pub(super) fn check_inverse(value: f64, what: &str, path: impl FnOnce() -> String) -> Result<(), BodyError> {
+    if value.recip().is_finite() {
+        return Ok(());
+    }
+    let problem = format!("{value:e} is so small that its inverse is infinite; give a larger {what}");
+    Err(BodyError::Inconsistent { path: path(), problem })
+}

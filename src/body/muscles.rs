@@ -3,7 +3,7 @@
 use bevy::{ecs::prelude::*, prelude::ReflectComponent, reflect::Reflect};
 use serde::{Deserialize, Serialize};
 
-use super::{BodyError, Requirement, SpringId, Springs, check};
+use super::{BodyError, Requirement, SpringId, Springs, check, error::check_inverse};
 
 /// A driven rest length never falls below this fraction of the rest length: a spring of no length has no direction, and what is
 /// driven through zero turns inside out (clamp of the muscle law in Wriggle's model of Miller's animals).
@@ -47,15 +47,20 @@ impl Muscle {
                 count: springs,
             });
         }
+        self.check_numbers(|| format!("muscles[{index}]"))
+    }
+
+    /// Whether its numbers can be, of a muscle that is called `name` where it comes from.
+    pub(crate) fn check_numbers(&self, name: impl Fn() -> String) -> Result<(), BodyError> {
         for (field, value, requirement) in [
             ("amplitude", self.amplitude, Requirement::NonNegative),
             ("period", self.period, Requirement::Positive),
             ("phase", self.phase, Requirement::Finite),
             ("ramp", self.ramp, Requirement::NonNegative),
         ] {
-            check(value, requirement, || format!("muscles[{index}].{field}"))?;
+            check(value, requirement, || format!("{}.{field}", name()))?;
         }
-        Ok(())
+        check_inverse(self.period, "period", || format!("{}.period", name()))
     }
 }
 

@@ -2,7 +2,7 @@
 
 use bevy::{ecs::prelude::*, math::DVec3, prelude::ReflectComponent, reflect::Reflect};
 
-use super::{BodyError, Requirement, check};
+use super::{BodyError, Requirement, check, error::check_inverse};
 
 /// One of a body's particles, counted from 0 in the order of its file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Reflect)]
@@ -43,11 +43,8 @@ impl Particle {
         // A pinned particle moves as little without a mass.
         let requirement = if self.pinned { Requirement::NonNegative } else { Requirement::Positive };
         check(self.mass, requirement, || format!("particles[{index}].mass"))?;
-        if !self.pinned && !self.mass.recip().is_finite() {
-            return Err(BodyError::Inconsistent {
-                path: format!("particles[{index}].mass"),
-                problem: format!("{:e} is so small that its inverse is infinite; give a larger mass", self.mass),
-            });
+        if !self.pinned {
+            check_inverse(self.mass, "mass", || format!("particles[{index}].mass"))?;
         }
         if self.pinned && self.velocity != DVec3::ZERO {
             return Err(BodyError::Inconsistent {

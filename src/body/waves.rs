@@ -3,7 +3,10 @@
 use bevy::{ecs::prelude::*, prelude::ReflectComponent, reflect::Reflect};
 use serde::{Deserialize, Serialize};
 
-use super::{BodyError, LEAST_REST_FRACTION, Muscles, Requirement, Wave, check, guidance::Ramp, muscles::Epoch};
+use super::{
+    BodyError, LEAST_REST_FRACTION, Muscles, Requirement, Wave, check, error::check_inverse, guidance::Ramp,
+    muscles::Epoch,
+};
 
 /// Which sides of a segment a wave makes longer and shorter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Reflect, Serialize, Deserialize)]
@@ -55,7 +58,7 @@ impl TravelingWave {
         ] {
             check(value, requirement, || format!("waves[{index}].{field}"))?;
         }
-        Ok(())
+        check_inverse(self.period, "period", || format!("waves[{index}].period"))
     }
 }
 

@@ -8,7 +8,7 @@ use std::{
 
 use clap::Args;
 
-use super::{CliError, Outcome, progress::progress_of};
+use super::{CliError, Outcome, progress::progress_of, warn};
 use crate::{
     creatures::library::{self, SCENE},
     lab::{
@@ -44,9 +44,7 @@ pub(super) fn chart(arguments: &ChartArguments) -> Result<Outcome, CliError> {
     }
     let mut out = io::stdout().lock();
     for (name, scene) in &scenes {
-        for warning in &scene.warnings {
-            eprintln!("warning: {warning}");
-        }
+        warn(scene);
         // A scene that cannot be charted leaves the others their charts.
         let problem = match Problem::of(scene) {
             Err(error @ LabError::Unsupported { .. }) => {
@@ -143,7 +141,8 @@ fn measured(
     let bar = progress_of(&problem.name, "runs");
     bar.set_message("reference");
     bar.tick();
-    let truth = Truth::of(problem, &options.cache)?;
+    let (problem, truth) = Truth::as_far_as_known(problem.clone(), &options.cache)?;
+    let problem = &problem;
     let mut partial = gallery.partial(&problem.name, key)?;
     if !partial.is_empty() {
         bar.suspend(|| eprintln!("{}: going on after {} runs", problem.name, partial.len()));

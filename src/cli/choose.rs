@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use clap::Args;
 
-use super::{CliError, Outcome, list::write_table, progress::progress};
+use super::{CliError, Outcome, list::write_table, progress::progress, warn};
 use crate::{
     lab::{Cache, Candidate, Choice, Problem, Search, Truth, Unit, choose as find},
     scenes,
@@ -24,13 +24,11 @@ pub(super) struct ChooseArguments {
 
 pub(super) fn choose(arguments: &ChooseArguments) -> Result<Outcome, CliError> {
     let scene = scenes::load(&arguments.scene)?;
-    for warning in &scene.warnings {
-        eprintln!("warning: {warning}");
-    }
+    warn(&scene);
     let problem = Problem::of(&scene)?;
     let bar = progress("{wide_bar} {pos}/{len}  {msg}", None);
     bar.set_message("reference");
-    let truth = Truth::of(&problem, &Cache::of_platform())?;
+    let (problem, truth) = Truth::as_far_as_known(problem, &Cache::of_platform())?;
     let search = if arguments.cheapest { Search::Cheapest } else { Search::Frontier };
     let choice = find(&problem, &truth, search, &mut |done, total, what| {
         bar.set_length(total as u64);
@@ -64,6 +62,9 @@ fn print(out: &mut impl Write, found: &Choice, search: Search) -> io::Result<()>
                 100.0 * found.reference_error
             )?;
         }
+    }
+    if found.shortened {
+        writeln!(out, "no longer, since later motion depends on roundings: steps that are small do not agree on it")?;
     }
     let mut rows = vec![["  method", "friction", "dt", "cost", "error", "of budget"].map(String::from).to_vec()];
     if search == Search::Frontier {

@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use clap::Args;
 
-use super::{CliError, Outcome, list::write_table, progress::progress_of};
+use super::{CliError, Outcome, list::write_table, progress::progress_of, warn};
 use crate::{
     creatures::library::{self, SCENE},
     lab::limits::{Limits, limits},
@@ -28,6 +28,7 @@ pub(super) fn print(arguments: &LimitsArguments) -> Result<Outcome, CliError> {
     let loaded = names.iter().map(|name| scenes::load(name)).collect::<Result<Vec<_>, _>>()?;
     let mut all = Vec::new();
     for scene in &loaded {
+        warn(scene);
         let bar = progress_of(&scene.source.stem(), "bodies and methods");
         let rows = limits(scene, &|done, of| {
             bar.set_length(of as u64);

@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use clap::Args;
 
-use super::{CliError, Headless, Outcome};
+use super::{CliError, Headless, Outcome, warn};
 use crate::{
     creatures::{
         JellyPlan, Plan, RoadForm,
@@ -32,7 +32,9 @@ pub(super) fn list(arguments: &ListArguments) -> Result<Outcome, CliError> {
 }
 
 fn paths(scene: &str) -> Result<Vec<Vec<String>>, CliError> {
-    let mut run = Headless::new(scenes::load(scene)?, None)?;
+    let scene = scenes::load(scene)?;
+    warn(&scene);
+    let mut run = Headless::new(scene, None)?;
     let mut rows = vec![["path", "value", "range", "unit", "what it is"].map(String::from).to_vec()];
     rows.extend(parameters::list(run.world_mut()).into_iter().map(|parameter| {
         vec![

@@ -9,7 +9,7 @@ use crate::{
     body::BodyError,
     creatures::FileError,
     lab::{GalleryError, LabError},
-    scenes::parameters::ParameterError,
+    scenes::{LoadedScene, parameters::ParameterError},
 };
 
 mod chart;
@@ -107,6 +107,13 @@ pub enum CliError {
 impl CliError {
     fn stdout(error: io::Error) -> Self {
         Self::Output { place: "standard output".into(), error }
+    }
+}
+
+/// Says what a scene's files allow and probably do not mean.
+fn warn(scene: &LoadedScene) {
+    for warning in &scene.warnings {
+        eprintln!("warning: {warning}");
     }
 }
 

@@ -13,7 +13,7 @@ use super::{
     CliError, Headless, Outcome,
     progress::progress,
     report::{Report, write_record, write_record_head},
-    values,
+    values, warn,
 };
 use crate::{
     body::Rules,
@@ -78,9 +78,7 @@ pub(super) fn run(arguments: &RunArguments) -> Result<Outcome, CliError> {
     if let Some(method) = arguments.method {
         scene.file.method = method;
     }
-    for warning in &scene.warnings {
-        eprintln!("warning: {warning}");
-    }
+    warn(&scene);
     let (name, method) = (scene.source.stem(), scene.file.method);
     let mut run = Headless::new(scene, arguments.threads.map(usize::from))?;
     let only_six = run.bodies().next().is_some() && run.bodies().all(|(_, body, _)| body.contains::<Rules>());

@@ -289,6 +289,9 @@ fn muscles(raw: &RawBody, springs: &Springs) -> Result<Option<Muscles>, BodyErro
             ramp: muscle.ramp,
         })
     });
+    let muscles: Vec<_> = muscles.collect();
+    // A file has them at their springs.
+    muscles.iter().try_for_each(|muscle| muscle.check_numbers(|| format!("springs[{}].muscle", muscle.spring.0)))?;
     Ok(Some(Muscles::new(muscles, springs)?).filter(|muscles| !muscles.is_empty()))
 }
 

@@ -32,6 +32,8 @@ pub struct Choice {
     pub scene: String,
     /// The simulated time of a run.
     pub duration: f64,
+    /// Whether that is less than ten cycles, since nobody knows how the motion goes on.
+    pub shortened: bool,
     /// The error that the scene can afford.
     pub budget: f64,
     /// What an error is.
@@ -114,6 +116,7 @@ pub fn choose(
     Ok(Choice {
         scene: problem.name.clone(),
         duration: problem.duration,
+        shortened: problem.shortened,
         budget,
         unit,
         choice,

@@ -21,7 +21,7 @@ impl GaitSpeeds {
     pub const METHOD: Method = Method::RungeKutta4;
 
     /// What they are and what confirms them.
-    pub const WORDS: &str = "the speed of each gait over its last four cycles by Runge–Kutta 4 in a sixteenth of the scene's step, confirmed by an eighth";
+    pub const WORDS: &str = "the speed of each gait over its last four cycles, or all of them, by Runge–Kutta 4 in a sixteenth of the scene's step, confirmed by an eighth";
 
     /// Steps all bodies in a sixteenth of the scene's step, and in an eighth to see how far the speeds can be trusted.
     ///

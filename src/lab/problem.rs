@@ -183,8 +183,11 @@ pub struct Problem {
     pub unit: Unit,
     /// The longest period of a muscle, or nothing where no muscle is.
     pub period: Option<f64>,
-    /// How long it is followed: as long as its budget of shapes says, or else ten of the longest period, or 20 units of time where no muscle is.
+    /// How long it is followed: as long as its budget of shapes says, or else ten of the longest period, or 20 units of time where no muscle is; less where
+    /// it is `shortened`.
     pub duration: f64,
+    /// Whether it is followed for a shorter time, since no step is small enough to tell how it goes on: see [`Truth::as_far_as_known`](super::Truth::as_far_as_known).
+    pub shortened: bool,
 }
 
 impl Problem {
@@ -218,6 +221,7 @@ impl Problem {
             unit,
             period: None,
             duration: 0.0,
+            shortened: false,
         };
         problem.set_duration();
         if let Budget::Shape { until, .. } = file.budget {
@@ -240,6 +244,7 @@ impl Problem {
             unit: Unit::Length,
             period: None,
             duration: 0.0,
+            shortened: false,
         };
         problem.set_duration();
         problem
@@ -248,6 +253,14 @@ impl Problem {
     fn set_duration(&mut self) {
         self.period = self.bodies.iter().filter_map(ProblemBody::period).reduce(f64::max);
         self.duration = self.period.map_or(WITHOUT_MUSCLES, |period| CYCLES * period);
+    }
+
+    /// The same over shorter times, whole cycles of the longest period, from the longest down to two cycles; none where nothing has a cycle.
+    pub(super) fn shorter(&self) -> impl Iterator<Item = Self> {
+        const FEWER: [f64; 6] = [8.0, 6.0, 5.0, 4.0, 3.0, 2.0];
+        let durations = self.period.into_iter().flat_map(|period| FEWER.map(|cycles| cycles * period));
+        let shorter = durations.filter(|duration| *duration < self.duration);
+        shorter.map(|duration| Self { duration, shortened: true, ..self.clone() })
     }
 
     /// The time between two shared times.

@@ -50,7 +50,7 @@ impl SweepOptions {
 /// updates (a hundred million in a quick sweep).
 ///
 /// # Errors
-/// If the truth cannot be had; see [`Truth::of`].
+/// If the truth cannot be had; see [`Truth::as_far_as_known`].
 pub fn work_precision(
     scene: &LoadedScene,
     options: &SweepOptions,
@@ -58,7 +58,7 @@ pub fn work_precision(
 ) -> Result<WorkPrecision, LabError> {
     let problem = Problem::of(scene)?;
     progress(0, 1, "reference");
-    let truth = Truth::of(&problem, &options.cache)?;
+    let (problem, truth) = Truth::as_far_as_known(problem, &options.cache)?;
     Ok(sweep(&problem, &truth, options, progress))
 }
 
@@ -104,10 +104,20 @@ pub fn resumed_sweep<E>(
         setting: problem.setting,
         unit: truth.unit(),
         budget: problem.budget,
-        reference: truth.words().into(),
+        reference: reference_words(problem, truth),
         reference_error: truth.error(),
         machine: machine(),
     })
+}
+
+/// What the reference is and what confirms it, and why it may end early.
+fn reference_words(problem: &Problem, truth: &Truth) -> String {
+    let words = truth.words();
+    if problem.shortened {
+        format!("{words}; until t = {}, since later motion depends on roundings", problem.duration)
+    } else {
+        words.into()
+    }
 }
 
 /// The document's setting: half a millisecond, semi-implicit Euler.

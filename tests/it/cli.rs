@@ -335,6 +335,20 @@ fn a_tangle_is_told_of_in_words() {
     fs::write(folder.path().join("wide.creature.ron"), creature).unwrap();
     let (_, said) = run(&["wide.creature.ron"]);
     assert_eq!((said.matches(cut).count(), said.matches("wide.creature.ron:").count()), (1, 1), "{said}");
+    // So do the commands that run nothing.
+    let listed = in_folder(folder.path(), &["list", "--paths", "wide.creature.ron"]);
+    assert!(stderr(&listed).starts_with("warning: ") && stderr(&listed).contains("wide.creature.ron:"));
+}
+
+#[test]
+fn limits_begin_with_the_warnings_of_their_scenes() {
+    let folder = TempDir::new().unwrap();
+    let creature =
+        include_str!("../../assets/creatures/raw-worm.creature.ron").replacen("amplitude: 0.25", "amplitude: 0.9", 1);
+    fs::write(folder.path().join("wide.creature.ron"), creature).unwrap();
+    let said = stderr(&in_folder(folder.path(), &["limits", "wide.creature.ron"]));
+    assert_eq!(said.matches("warning: ").count(), 1, "{said}");
+    assert!(said.contains("wide.creature.ron:") && said.contains("muscle.amplitude: 0.9 is above 0.8"), "{said}");
 }
 
 #[test]

@@ -340,6 +340,7 @@ fn places_that_contradict_each_other_are_named() {
             "mass: 1e-320)",
             &["particles[0].mass: 1e-320 is so small that its inverse is infinite", "larger"],
         ),
+        ("period: 2", "period: 1e-320", &["springs[0].muscle.period: 1e-320 is so small", "larger period"]),
         ("mass: 1)", "velocity: (1, 0, 0), pinned: true)", &["particles[0].velocity: a pinned particle never moves"]),
     ] {
         assert!(RAW.contains(good));

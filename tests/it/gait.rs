@@ -69,7 +69,7 @@ fn what_a_gait_keeps_does_not_grow_with_time() {
 
 #[test]
 fn cycles_that_are_shorter_than_steps_have_no_gait() {
-    for period in [0.0015, 1e-3, 1e-300, 5e-324] {
+    for period in [0.0015, 1e-3, 1e-300] {
         let mut app = stepping_app(0.02, 1);
         let body = Animal::snake().with(|snake| snake.plan.waves[0].period = period).spawn(app.world_mut());
         let parts = body_parts(app.world().entity(body)).unwrap();

@@ -132,8 +132,30 @@ fn a_full_disk_leaves_the_old_file_and_nothing_else() {
     assert_eq!(files(folder.path()), ["mine.scene.ron"]);
 }
 
+#[cfg(target_os = "linux")]
 #[test]
-#[ignore = "run by a_full_disk_leaves_the_old_file_and_nothing_else"]
+fn a_crash_in_the_middle_of_writing_leaves_the_old_file() {
+    use std::os::unix::process::ExitStatusExt;
+    // The same limit kills a process that does not ignore its signal, at the first byte that it writes: sooner than it can clean up.
+    let folder = TempDir::new().unwrap();
+    let path = folder.path().join("mine.scene.ron");
+    fs::write(&path, "old").unwrap();
+    let output = std::process::Command::new("sh")
+        .args([
+            "-c",
+            "ulimit -c 0; ulimit -f 0; exec \"$0\" saving::helper_saves_the_garden --exact --ignored --nocapture",
+        ])
+        .arg(std::env::current_exe().unwrap())
+        .env("WRIGGLE_TEST_SAVE_TO", &path)
+        .output()
+        .unwrap();
+    const SIGXFSZ: i32 = 25;
+    assert_eq!(output.status.signal(), Some(SIGXFSZ), "{}", String::from_utf8_lossy(&output.stderr));
+    assert_eq!(fs::read_to_string(&path).unwrap(), "old");
+}
+
+#[test]
+#[ignore = "run by the tests of a full disk and of a crash"]
 fn helper_saves_the_garden() {
     let Some(path) = std::env::var_os("WRIGGLE_TEST_SAVE_TO") else { return };
     let mut world = World::new();

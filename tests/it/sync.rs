@@ -5,6 +5,7 @@ use core::time::Duration;
 use wriggle::{
     body::{Particle, ParticleId, Particles, Springs},
     physics::{Clock, FollowParticle, PhysicsPlugin, Shown, ShownLap},
+    scenes::{self, SceneBodies, ScenesPlugin, garden},
 };
 
 use crate::support::ticking_app;
@@ -97,4 +98,40 @@ fn a_lap_moves_what_is_shown_and_not_the_body() {
     }
     assert!(app.world().get::<Particles>(body).unwrap().center().x > 5.0);
     assert_eq!([0.0, 0.49, 0.5, 2.49, 2.5, 4.6].map(|x| lap.offset(x)), [0.0, 0.0, 2.0, 2.0, 4.0, 6.0]);
+}
+
+#[test]
+fn the_garden_worm_goes_in_at_its_door_and_comes_out_of_its_burrow_again_and_again() {
+    /// How far the inside of the house and the tunnel of the burrow reach.
+    const INSIDE: [f32; 2] = [-5.0, 14.5];
+    let mut app = App::new();
+    app.add_plugins((MinimalPlugins, PhysicsPlugin::default(), ScenesPlugin::new(scenes::load("garden").unwrap())));
+    app.insert_resource(TimeUpdateStrategy::FixedTimesteps(1));
+    app.update();
+    let worm = app.world().resource::<SceneBodies>().0[0];
+    let ends = |app: &App| {
+        let places = app.world().get::<Shown>(worm).unwrap().positions().iter().map(|at| at.x);
+        places.fold([f32::INFINITY, f32::NEG_INFINITY], |[tail, head], x| [tail.min(x), head.max(x)])
+    };
+    let (mut laps, mut before, mut left, mut arrived) = (0, ends(&app), false, false);
+    // Three times the length of the path and more.
+    for _ in 0..8000 {
+        app.update();
+        let [tail, head] = ends(&app);
+        if head < before[1] - 5.0 {
+            // It was all in its house, and is all in its burrow, out of sight both times.
+            assert!(before[0] > garden::DOOR as f32 && before[1] < INSIDE[1], "behind the door at {before:?}");
+            assert!(head < garden::BURROW_MOUTH as f32 && tail > INSIDE[0], "in the burrow at {tail} to {head}");
+            assert!(laps == 0 || left && arrived, "it came all the way");
+            (laps, left, arrived) = (laps + 1, false, false);
+        } else {
+            assert!((head - before[1]).abs() < 0.1, "from {} to {head} in a tick", before[1]);
+        }
+        left |= tail > garden::BURROW_MOUTH as f32 && head < garden::DOOR as f32;
+        arrived |= tail < garden::DOOR as f32 && head > garden::DOOR as f32;
+        before = [tail, head];
+    }
+    assert!(laps >= 3, "{laps} laps");
+    let way = app.world().get::<Particles>(worm).unwrap().center().x;
+    assert!(way > garden::LAP.end + 2.0 * garden::LAP.length, "the body itself goes straight on: {way}");
 }
