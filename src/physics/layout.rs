@@ -33,6 +33,11 @@ pub(super) struct Slot {
 }
 
 impl Slot {
+    /// The bodies that it was for last.
+    pub(super) fn sources(&self) -> &[Source] {
+        &self.sources
+    }
+
     /// Takes these steps with a group: in the layout of the last ones where it holds the same bodies, else in a new one.
     pub(super) fn step(&mut self, group: &mut [Item<'_>], timeline: Timeline, steps: Range<u64>) {
         let same = self.sources.iter().eq(group.iter().map(|item| &item.source));

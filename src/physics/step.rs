@@ -116,10 +116,14 @@ impl Item<'_> {
     }
 }
 
-/// The groups of the last tick in order, with steps of `dt`.
+/// What the last tick knew of its bodies, with steps of `dt`. Nothing of it is left once a body changes, and what did not change is not looked at again:
+/// of thousands of bodies that takes longer than their steps.
 #[derive(Default)]
 pub(super) struct Kept {
     dt: f64,
+    /// The bodies in the order in which they are found.
+    found: Vec<Source>,
+    /// Their groups in order.
     slots: Vec<Slot>,
 }
 
@@ -135,8 +139,9 @@ pub(super) fn step(
     let start = Instant::now();
     // So seldom that all may be laid out anew for one that changed.
     if kept.dt != clock.dt() || !queries.p0().is_empty() {
-        *kept = Kept { dt: clock.dt(), slots: Vec::new() };
+        *kept = Kept { dt: clock.dt(), ..Kept::default() };
     }
+    let Kept { found, slots, .. } = &mut *kept;
     let steps = clock.take_steps(time.delta_secs_f64());
     (cost.steps, cost.seconds) = (steps, 0.0);
     if steps == 0 {
@@ -144,6 +149,7 @@ pub(super) fn step(
     }
     let (timeline, range) = (clock.timeline(), clock.step()..clock.step() + steps);
     let mut bodies = queries.p1();
+    let mut known = found.iter();
     let mut items: Vec<_> = bodies
         .iter_mut()
         .filter_map(|((body, archetype), particles, parts, tearing, plan, mut verdict, work, steer)| {
@@ -152,11 +158,16 @@ pub(super) fn step(
                 *verdict = Verdict(Some(Failure { step, time, particle: ParticleId(0), reason }));
                 return None;
             }
-            let on_axis = parts.body(&particles, None, None).on_axis();
-            let source = Source { body, archetype: archetype.id(), on_axis };
+            let known = known.next().filter(|known| (known.body, known.archetype) == (body, archetype.id()));
+            let source = known.copied().unwrap_or_else(|| {
+                let on_axis = parts.body(&particles, None, None).on_axis();
+                Source { body, archetype: archetype.id(), on_axis }
+            });
             Some(Item { source, particles, parts, tearing, plan, verdict, work, steer, turned: false, evaluations: 0 })
         })
         .collect();
+    found.clear();
+    found.extend(items.iter().map(|item| item.source));
     items.sort_by_key(|item| (item.plan.topology, item.source.on_axis));
     let mut failed = Vec::new();
     let mut from = range.start;
@@ -164,7 +175,7 @@ pub(super) fn step(
         // Who steers looks at the same steps whatever the ticks are, so ticks change no bits.
         let due = items.iter_mut().filter_map(|item| item.steer(timeline, from));
         let end = due.fold(range.end, u64::min);
-        step_all(&mut items, &mut kept.slots, timeline, from..end);
+        step_all(&mut items, slots, timeline, from..end);
         failed.extend(items.extract_if(.., |item| item.verdict.0.is_some()));
         from = end;
     }
@@ -180,13 +191,11 @@ pub(super) fn step(
 
 /// Takes these steps with every body.
 fn step_all(items: &mut [Item<'_>], slots: &mut Vec<Slot>, timeline: Timeline, range: Range<u64>) {
-    let groups: Vec<_> = items
-        .chunk_by_mut(Item::matches)
-        .flat_map(|alike| {
-            let width = side_by_side(alike);
-            alike.chunks_mut(width)
-        })
-        .collect();
+    let groups = if slots.iter().flat_map(Slot::sources).eq(items.iter().map(|item| &item.source)) {
+        same_groups(items, slots)
+    } else {
+        new_groups(items)
+    };
     let shared = groups.len() > 1 && work(&groups, &range) >= WORTH_SHARING;
     slots.resize_with(groups.len(), Slot::default);
     let mut groups: Vec<_> = slots.iter_mut().zip(groups).collect();
@@ -206,6 +215,22 @@ fn step_all(items: &mut [Item<'_>], slots: &mut Vec<Slot>, timeline: Timeline, r
             });
         }
     });
+}
+
+/// The groups in which they were stepped last.
+fn same_groups<'a, 'b>(mut items: &'a mut [Item<'b>], slots: &[Slot]) -> Vec<&'a mut [Item<'b>]> {
+    slots.iter().filter_map(|slot| items.split_off_mut(..slot.sources().len())).collect()
+}
+
+/// Bodies that match, as many as are stepped side by side.
+fn new_groups<'a, 'b>(items: &'a mut [Item<'b>]) -> Vec<&'a mut [Item<'b>]> {
+    let alike = items.chunk_by_mut(Item::matches);
+    alike
+        .flat_map(|alike| {
+            let width = side_by_side(alike);
+            alike.chunks_mut(width)
+        })
+        .collect()
 }
 
 /// How many spring updates these steps take, about.
