@@ -23,6 +23,17 @@ pub const SERIES: [Color32; 6] = [
     Color32::from_rgb(0xd5, 0x5e, 0x00),
 ];
 
+/// A colour from 0xRRGGBB.
+pub fn rgb(color: u32) -> Color32 {
+    let [_, red, green, blue] = color.to_be_bytes();
+    Color32::from_rgb(red, green, blue)
+}
+
+/// The same colour, through which others are seen.
+pub fn faint(color: Color32, opacity: f32) -> Color32 {
+    color.gamma_multiply(opacity)
+}
+
 /// The frame around the panel.
 pub fn frame() -> egui::Frame {
     egui::Frame::new().fill(BACKGROUND).inner_margin(Margin { left: 10, right: 4, top: 8, bottom: 8 })

@@ -1,18 +1,16 @@
 //! The plots: lengths, velocities, distance, and the cost of a frame.
 
-use bevy_egui::egui::{self, Color32, FontId, RichText, Sense, Vec2b, vec2};
-use egui_plot::{AxisHints, Line, Plot, PlotPoints, PlotUi, Polygon};
+use bevy_egui::egui::{self, Color32, RichText, vec2};
+use egui_plot::{Line, PlotPoints, Polygon};
 
 use super::{
-    colors::{self, SERIES},
-    gait,
+    colors::{SERIES, faint, rgb},
+    gait_plots,
+    plot::{Axes, legend, points},
     ring::Ring,
     settings::Settings,
-    traces::{BesideBlock, Block, Traces},
+    traces::{self, BesideBlock, Block, Traces},
 };
-
-/// How high a plot is.
-const HEIGHT: f32 = 108.0;
 
 /// All plots.
 pub fn section(ui: &mut egui::Ui, settings: &mut Settings, traces: &Traces) {
@@ -27,14 +25,14 @@ pub fn section(ui: &mut egui::Ui, settings: &mut Settings, traces: &Traces) {
             velocities(ui, traces, shown);
         }
         distance(ui, traces, shown);
-        gait::section(ui, &traces.gait);
+        gait_plots::section(ui, &traces.gait);
     }
     cost(ui, settings, traces);
 }
 
 fn lengths(ui: &mut egui::Ui, traces: &Traces, shown: (f64, f64)) {
     legend(ui, "spring length (thin: rest length)", traces.springs.iter().map(|trace| trace.name.as_str()));
-    show(ui, "lengths", shown, |plot| {
+    Axes::new("lengths", shown).show(ui, |plot| {
         for (trace, color) in traces.springs.iter().zip(SERIES) {
             let rest = format!("rest length {}", trace.name);
             plot.line(Line::new(rest, points(&traces.time, &trace.rest)).color(faint(color, 0.6)).width(1.0));
@@ -45,7 +43,7 @@ fn lengths(ui: &mut egui::Ui, traces: &Traces, shown: (f64, f64)) {
 
 fn velocities(ui: &mut egui::Ui, traces: &Traces, shown: (f64, f64)) {
     legend(ui, "velocity (bars: at rest)", traces.masses.iter().map(|trace| trace.name.as_str()));
-    show(ui, "velocities", shown, |plot| {
+    Axes::new("velocities", shown).show(ui, |plot| {
         // A lane below zero for each mass: shades across the whole plot would hide each other.
         let fastest = traces.masses.iter().flat_map(|trace| trace.velocity.iter()).fold(0.0_f64, |a, v| a.max(v.abs()));
         let lane = (fastest * 0.12).max(1e-9);
@@ -81,7 +79,7 @@ fn block(ui: &mut egui::Ui, traces: &Traces, shown: (f64, f64)) {
     for ((id, title, value, least), color) in plots.into_iter().zip(SERIES) {
         let now = traces.blocks.last().map(value).unwrap_or_default();
         legend(ui, &format!("{title}: {now:.3}"), []);
-        show_over(ui, id, shown, &least, |plot| {
+        Axes::new(id, shown).least(&least).show(ui, |plot| {
             let line = |name: &str, blocks: &Ring<Block>, color: Color32| {
                 let line = traces.time.iter().zip(blocks.iter()).map(|(&time, block)| [time, value(block)]);
                 Line::new(name, line.collect::<PlotPoints<'_>>()).color(color).width(1.8)
@@ -117,17 +115,11 @@ fn side_by_side(ui: &mut egui::Ui, traces: &Traces) {
     });
 }
 
-/// A colour from 0xRRGGBB.
-fn rgb(color: u32) -> Color32 {
-    let [_, red, green, blue] = color.to_be_bytes();
-    Color32::from_rgb(red, green, blue)
-}
-
 fn distance(ui: &mut egui::Ui, traces: &Traces, shown: (f64, f64)) {
     let now = traces.distance.last().copied().unwrap_or_default();
     legend(ui, &format!("distance travelled: {now:.2}"), []);
     // What rests is to look like it.
-    show_over(ui, "distance", shown, &[0.0, 0.01], |plot| {
+    Axes::new("distance", shown).least(&[0.0, 0.01]).show(ui, |plot| {
         plot.line(Line::new("distance", points(&traces.time, &traces.distance)).color(SERIES[0]).width(1.8));
     });
 }
@@ -145,72 +137,13 @@ fn cost(ui: &mut egui::Ui, settings: &Settings, traces: &Traces) {
         .weak(),
     );
     let Some((first, last)) = traces.frames.first().zip(traces.frames.last()) else { return };
-    show(ui, "cost", (first.time, last.time), |plot| {
-        let line = |value: fn(&super::traces::Frame) -> f64| -> PlotPoints<'_> {
+    Axes::new("cost", (first.time, last.time)).show(ui, |plot| {
+        let line = |value: fn(&traces::Frame) -> f64| -> PlotPoints<'_> {
             traces.frames.iter().map(|frame| [frame.time, value(frame)]).collect()
         };
         plot.line(Line::new("frame", line(|frame| frame.frame)).color(SERIES[0]).fill(0.0).fill_alpha(0.15));
         plot.line(Line::new("physics", line(|frame| frame.physics)).color(SERIES[1]).width(1.8));
     });
-}
-
-/// The title of a plot, with the names of its lines in their colours.
-fn legend<'a>(ui: &mut egui::Ui, title: &str, names: impl IntoIterator<Item = &'a str>) {
-    ui.add_space(4.0);
-    ui.horizontal_wrapped(|ui| {
-        ui.label(RichText::new(title).size(12.0));
-        for (name, color) in names.into_iter().zip(SERIES) {
-            let (stroke, _) = ui.allocate_exact_size(vec2(10.0, 3.0), Sense::hover());
-            ui.painter().rect_filled(stroke, 1.0, color);
-            ui.label(RichText::new(name).size(11.5).color(color));
-        }
-    });
-}
-
-/// A plot over `span`, as high as its lines ask for.
-fn show<'a>(ui: &mut egui::Ui, id: &str, span: (f64, f64), draw: impl FnOnce(&mut PlotUi<'a>) + 'a) {
-    show_over(ui, id, span, &[], draw);
-}
-
-/// A plot over `span`, as high as its lines and the values `least` ask for.
-fn show_over<'a>(
-    ui: &mut egui::Ui,
-    id: &str,
-    (start, end): (f64, f64),
-    least: &[f64],
-    draw: impl FnOnce(&mut PlotUi<'a>) + 'a,
-) {
-    let font = FontId::proportional(10.0);
-    let axes = [AxisHints::new_x(), AxisHints::new_y().min_thickness(26.0)]
-        .map(|axis| axis.tick_label_font(font.clone()).tick_label_color(Color32::from_gray(0x90)));
-    let [x, y] = axes;
-    ui.visuals_mut().extreme_bg_color = colors::WELL;
-    let plot = Plot::new(id.to_string());
-    least
-        .iter()
-        .fold(plot, |plot, value| plot.include_y(*value))
-        .height(HEIGHT)
-        .width(ui.available_width() - 2.0)
-        .custom_x_axes(vec![x])
-        .custom_y_axes(vec![y])
-        .allow_drag(false)
-        .allow_zoom(false)
-        .allow_scroll(false)
-        .allow_boxed_zoom(false)
-        .allow_axis_zoom_drag(false)
-        .allow_double_click_reset(false)
-        .grid_color(Color32::from_gray(0x58))
-        .grid_spacing(14.0..=160.0)
-        .show(ui, move |plot| {
-            plot.set_auto_bounds(Vec2b::new(false, true));
-            draw(plot);
-            // A span of no length has no scale.
-            plot.set_plot_bounds_x(start..=end.max(start + 1e-3));
-        });
-}
-
-fn points<'a>(time: &Ring<f64>, values: &Ring<f64>) -> PlotPoints<'a> {
-    time.iter().zip(values.iter()).map(|(&time, &value)| [time, value]).collect()
 }
 
 /// The last ten seconds of what was recorded, in simulated time.
@@ -219,8 +152,4 @@ fn span(settings: &Settings, traces: &Traces) -> (f64, f64) {
     let end = traces.time.last().copied().unwrap_or_default();
     let recorded = traces.time.first().copied().unwrap_or_default();
     (if scale > 0.0 { recorded.max(end - 10.0 * scale) } else { recorded }, end)
-}
-
-fn faint(color: Color32, opacity: f32) -> Color32 {
-    color.gamma_multiply(opacity)
 }

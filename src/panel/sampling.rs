@@ -57,7 +57,7 @@ pub(super) fn tick(
         seen.side_by_side = side_by_side(scene.as_deref(), &bodies, clock.time());
     }
     traces.record(body, &seen);
-    traces.gait.look(body, &parts, &clock);
+    traces.gait.look(body, &parts, clock.time(), clock.dt());
 }
 
 /// All blocks of a scene, in its order; none where there is only one.

@@ -40,6 +40,8 @@ mod panel;
 #[cfg(feature = "window")]
 mod panel_bodies;
 #[cfg(feature = "window")]
+mod panel_gait;
+#[cfg(feature = "window")]
 mod panel_pages;
 mod parameters;
 #[cfg(feature = "window")]
