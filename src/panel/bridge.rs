@@ -5,13 +5,14 @@ use std::collections::HashMap;
 
 use bevy::{
     ecs::{change_detection::DetectChanges, change_detection::Tick, prelude::*},
-    prelude::{Camera, GlobalTransform, Name, Vec3},
+    prelude::{Name, Vec3},
     time::{Fixed, Real, Time, Virtual},
 };
 
 use super::{
-    chart,
+    blocks, chart,
     gauge::Gauge,
+    labels::Sight,
     names::Path,
     race::RunnerInfo,
     setting::Setting,
@@ -24,7 +25,7 @@ use crate::{
     mechanics::integrators::Method,
     physics::{BodyFrozen, BodyInverted, Clock, Frozen, Plan, Restart, Shown, Steer, WavesCut, Work},
     scenes::{self, BodyRescued, CurrentScene, Runner, SceneBodies, SceneChange, SceneProblem, parameters},
-    view::{SceneCamera, Selected},
+    view::Selected,
 };
 
 /// Seconds between two readings of all parameters: others than the panel change them rarely.
@@ -93,7 +94,9 @@ pub fn read(world: &mut World) {
                 read_parameters(world, &mut settings, &mut known, opened);
             }
             settings.gauge = gauge(world);
-            settings.race = race(world);
+            let sight = Sight::of(world);
+            settings.race = race(world, &sight);
+            settings.blocks = blocks::find(world, &sight);
         });
     });
 }
@@ -209,18 +212,14 @@ fn read_parameters(world: &mut World, settings: &mut Settings, known: &mut Known
 }
 
 /// The runners of a race, the truth first.
-fn race(world: &mut World) -> Vec<RunnerInfo> {
+fn race(world: &mut World, sight: &Sight) -> Vec<RunnerInfo> {
     let time = world.get_resource::<Clock>().map_or(0.0, Clock::time);
-    let mut cameras = world.query_filtered::<(&Camera, &GlobalTransform), With<SceneCamera>>();
-    let camera = cameras.iter(world).next().map(|(camera, transform)| (camera.clone(), *transform));
     let mut runners = world.query::<(Entity, &Runner, &Method, &Work, &Plan, &Shown, Has<Frozen>)>();
     let mut race: Vec<_> = runners
         .iter(world)
         .map(|(entity, runner, method, work, plan, shown, frozen)| {
             // Above the head.
-            let place = shown.positions().last().zip(camera.as_ref()).and_then(|(head, (camera, transform))| {
-                camera.world_to_viewport(transform, *head + Vec3::new(0.7, 0.5, 0.0)).ok()
-            });
+            let place = shown.positions().last().and_then(|head| sight.place(*head + Vec3::new(0.7, 0.5, 0.0)));
             let info = RunnerInfo {
                 entity,
                 truth: runner.lane == 0,
@@ -231,7 +230,7 @@ fn race(world: &mut World) -> Vec<RunnerInfo> {
                 cost: if time > 0.0 { work.force_evaluations as f64 / time } else { 0.0 },
                 limit: plan.stability_limit(),
                 frozen,
-                place: place.map(|place| (place.x, place.y)),
+                place,
             };
             (runner.lane, info)
         })

@@ -4,6 +4,7 @@
 //! [`plots`] and [`files`]. The bridge fills the settings from the world before the panel is drawn and does
 //! afterwards what the user asked for.
 
+pub mod blocks;
 pub mod bodies;
 pub mod bridge;
 pub mod chart;
@@ -13,6 +14,7 @@ pub mod gait;
 mod gait_plots;
 pub mod gauge;
 mod keys;
+mod labels;
 mod names;
 mod plot;
 pub mod plots;
@@ -133,6 +135,7 @@ fn say_width(settings: Res<Settings>, mut covered: ResMut<CoveredLeft>) {
 /// them, and without that a click between two sliders would move the camera.
 pub fn show(context: &egui::Context, settings: &mut Settings, traces: &Traces) {
     race::labels(context, settings);
+    blocks::labels(context, &settings.blocks);
     let area = egui::Area::new(egui::Id::new("panel")).fixed_pos(egui::Pos2::ZERO).movable(false).constrain(false);
     if settings.hidden {
         area.show(context, |ui| {

@@ -1,10 +1,10 @@
 //! A race: each runner's method, error, cost and limit, and a label at each runner in the scene.
 
 use bevy::ecs::entity::Entity;
-use bevy_egui::egui::{self, Align2, Color32, FontId, Pos2, RichText, Stroke, vec2};
+use bevy_egui::egui::{self, Align2, Color32, Pos2, RichText, Stroke, vec2};
 
 use super::{
-    colors,
+    colors, labels,
     settings::{Action, Settings},
     time,
 };
@@ -93,12 +93,8 @@ pub fn labels(context: &egui::Context, settings: &Settings) {
             (false, true) => format!("{} blew up", short(runner.method)),
             (false, false) => format!("{}  {}", short(runner.method), number(runner.error)),
         };
-        let text = painter.layout_no_wrap(text, FontId::proportional(13.0), Color32::WHITE);
-        let size = text.size();
-        let field = Align2::LEFT_CENTER.anchor_size(at, size).expand2(vec2(7.0, 3.0));
-        let color = Color32::from_rgb(runner.color[0], runner.color[1], runner.color[2]);
-        painter.rect(field, 4.0, Color32::from_black_alpha(170), Stroke::new(1.5, color), egui::StrokeKind::Outside);
-        painter.galley(field.min + vec2(7.0, 3.0), text, Color32::WHITE);
+        let [red, green, blue] = runner.color;
+        labels::write(&painter, at, Align2::LEFT_CENTER, text, Color32::from_rgb(red, green, blue));
         if runner.frozen {
             let (cross, arm) = (at + vec2(-24.0, 0.0), 11.0);
             for slope in [1.0, -1.0] {

@@ -2,11 +2,11 @@
 
 use bevy::{
     ecs::{prelude::*, resource::IsResource},
-    prelude::Name,
     time::{Real, Time},
 };
 
 use super::{
+    blocks,
     settings::Settings,
     traces::{BesideBlock, Frame, Observation, Traces, block, observe},
 };
@@ -60,28 +60,23 @@ pub(super) fn tick(
     traces.gait.look(body, &parts, clock.time(), clock.dt());
 }
 
-/// All blocks of a scene, in its order; none where there is only one.
+/// All blocks of a scene that has several, as the plots compare them.
 fn side_by_side(
     scene: Option<&SceneBodies>,
     bodies: &Query<EntityRef, (With<Particles>, Without<IsResource>)>,
     time: f64,
 ) -> Vec<BesideBlock> {
-    let in_order = scene.into_iter().flat_map(|scene| &scene.0).filter_map(|body| bodies.get(*body).ok());
-    let blocks: Vec<_> = in_order.filter(|entity| entity.contains::<Lattice>()).collect();
-    if blocks.len() < 2 {
-        return Vec::new();
-    }
-    let beside = |entity: EntityRef<'_>| {
-        let (parts, lattice) = (body_parts(entity)?, entity.get::<Lattice>()?);
+    let beside = |(entity, lattice): (EntityRef<'_>, Lattice)| {
+        let parts = body_parts(entity)?;
         Some(BesideBlock {
-            name: entity.get::<Name>().map_or_else(|| "block".into(), ToString::to_string),
-            color: skin_color(*lattice),
+            name: blocks::name(entity),
+            color: skin_color(lattice),
             springs: parts.springs.len(),
             limit: entity.get::<Plan>().map_or(f64::INFINITY, Plan::stability_limit),
             block: block(&parts, time)?,
         })
     };
-    blocks.into_iter().filter_map(beside).collect()
+    blocks::side_by_side(scene, |body| bodies.get(body).ok()).into_iter().filter_map(beside).collect()
 }
 
 /// Samples the cost of a frame.

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use bevy::ecs::prelude::*;
 
-use super::{chart::ChartState, gauge::Gauge, race::RunnerInfo, row::Edit, setting::Setting};
+use super::{blocks::BlockLabel, chart::ChartState, gauge::Gauge, race::RunnerInfo, row::Edit, setting::Setting};
 use crate::mechanics::integrators::{Method, StickRule};
 
 /// At most this many messages are kept; older ones go.
@@ -34,6 +34,8 @@ pub struct Settings {
     pub chart: ChartState,
     /// The runners of a race, the truth first; none where there is no race.
     pub race: Vec<RunnerInfo>,
+    /// The labels of blocks side by side; none where there is only one.
+    pub blocks: Vec<BlockLabel>,
     /// Whether time stands still.
     pub paused: bool,
     /// While in slow motion: the time scale to go back to.

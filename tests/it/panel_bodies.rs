@@ -1,12 +1,18 @@
 //! What the panel shows and sets of bodies that are no worms: animals, blocks, and several at once.
 
-use bevy::{math::DVec3, prelude::*};
+use bevy::{camera::RenderTargetInfo, math::DVec3, prelude::*};
+use bevy_egui::egui;
 use wriggle::{
     creatures::library,
-    panel::{self, Settings, bridge, traces::observe},
-    physics::{Steer, body_parts},
-    scenes::{self, parameters},
-    view::Selected,
+    panel::{
+        self, Settings,
+        blocks::{self, BlockLabel},
+        bridge,
+        traces::observe,
+    },
+    physics::{PhysicsPlugin, Shown, Steer, body_parts},
+    scenes::{self, ScenesPlugin, parameters},
+    view::{SceneCamera, Selected, skin_color},
 };
 
 /// The world of a shipped scene.
@@ -109,4 +115,63 @@ fn the_animal_that_is_led_and_the_body_that_is_shown_are_one() {
     // What belongs to nobody changes nothing.
     bridge::read(app.world_mut());
     assert_eq!((shown(&app), app.world().resource::<Selected>().0), (bodies[3], Some(bodies[3])));
+}
+
+/// A camera that looks along −z at the middle of the blocks, 100 pixels for a length at the plane of the middle.
+fn camera() -> (SceneCamera, Camera, GlobalTransform) {
+    let mut camera = Camera::default();
+    camera.computed.target_info = Some(RenderTargetInfo { physical_size: UVec2::new(4000, 2000), scale_factor: 1.0 });
+    camera.computed.clip_from_view = Mat4::orthographic_rh(-20.0, 20.0, -10.0, 10.0, 100.0, 0.0);
+    (SceneCamera, camera, GlobalTransform::from_xyz(0.0, 0.0, 50.0))
+}
+
+#[test]
+fn blocks_side_by_side_have_their_names_above_them() {
+    let mut app = App::new();
+    let scene = scenes::load("jelly-lab").unwrap();
+    app.add_plugins((MinimalPlugins, PhysicsPlugin::default(), ScenesPlugin::new(scene)));
+    app.init_resource::<Settings>().init_resource::<bridge::Known>();
+    app.update();
+    bridge::read(app.world_mut());
+    let labels = |app: &App| app.world().resource::<Settings>().blocks.clone();
+    assert!(labels(&app).iter().all(|label| label.place.is_none()), "without a camera nothing is in sight");
+    app.world_mut().spawn(camera());
+    bridge::read(app.world_mut());
+    let names: Vec<_> = labels(&app).into_iter().map(|label| label.name).collect();
+    assert_eq!(names, ["edges", "faces", "cubes", "all"]);
+    for (label, body) in labels(&app).iter().zip(&app.world().resource::<scenes::SceneBodies>().0) {
+        assert_eq!(label.color, skin_color(*app.world().get(*body).unwrap()), "{}", label.name);
+        let shown = app.world().get::<Shown>(*body).unwrap().positions();
+        let middle = shown.iter().map(|at| at.x).sum::<f32>() / shown.len() as f32;
+        let top = shown.iter().map(|at| at.y).fold(0.0, f32::max);
+        // Pixels go to the right and down.
+        let (x, y) = label.place.unwrap();
+        assert!((x - (2000.0 + 100.0 * middle)).abs() < 0.1, "{label:?}, its middle at {middle}");
+        let above = (1000.0 - y) / 100.0 - top;
+        assert!((0.5..1.5).contains(&above), "{} is {above} above its block", label.name);
+    }
+    // Which of them a single block is, nobody asks.
+    scenes::open(app.world_mut(), scenes::load("jelly").unwrap()).unwrap();
+    bridge::read(app.world_mut());
+    assert_eq!(labels(&app), []);
+}
+
+#[test]
+fn the_name_of_a_block_is_written_where_it_is_in_sight() {
+    let block = |name: &str, place| BlockLabel { name: name.into(), color: 0x35a86b, place };
+    let blocks = [block("faces", Some((400.0, 300.0))), block("all", None)];
+    let context = egui::Context::default();
+    let mut output = context.run_ui(egui::RawInput::default(), |ui| blocks::labels(ui.ctx(), &blocks));
+    output.textures_delta.clear();
+    let (mut texts, mut frames) = (Vec::new(), Vec::new());
+    for clipped in output.shapes {
+        match clipped.shape {
+            egui::Shape::Text(text) => texts.push((text.galley.text().to_owned(), text.visual_bounding_rect())),
+            egui::Shape::Rect(rect) => frames.push((rect.rect, rect.stroke.color)),
+            _ => {}
+        }
+    }
+    let ([(text, field)], [(frame, color)]) = (&texts[..], &frames[..]) else { panic!("{texts:?} {frames:?}") };
+    assert_eq!((text.as_str(), *color), ("faces", egui::Color32::from_rgb(0x35, 0xa8, 0x6b)));
+    assert!(frame.contains_rect(*field) && (frame.center().x - 400.0).abs() < 1.0 && frame.top() < 300.0, "{frame}");
 }
