@@ -21,8 +21,11 @@ struct Plotted {
     /// The values that are shown at least, so that noise looks like noise.
     least: [f64; 2],
     /// The lines by their names.
-    lines: &'static [(&'static str, fn(&GaitMetrics) -> f64)],
+    lines: &'static [NamedLine],
 }
+
+/// A line's name and its values.
+type NamedLine = (&'static str, fn(&GaitMetrics) -> f64);
 
 const PLOTS: [Plotted; 4] = [
     Plotted {
@@ -39,7 +42,7 @@ const PLOTS: [Plotted; 4] = [
     },
     Plotted {
         id: "gait parts",
-        title: "parts (%)",
+        title: "in %",
         least: [0.0, 10.0],
         lines: &[
             ("slip", |gait| 100.0 * gait.slip),

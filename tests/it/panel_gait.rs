@@ -115,7 +115,7 @@ fn a_gait_is_told_and_plotted_to_scale() {
     let now = history[history.len() - 1].metrics;
     let section = move |ui: &mut egui::Ui, settings: &mut Settings| plots::section(ui, settings, &traces);
     let harness = Harness::builder().with_size(vec2(300.0, 1200.0)).build_ui_state(section, Settings::default());
-    for title in ["speed (body lengths a cycle)", "to the right (°)", "parts (%)", "shape"] {
+    for title in ["speed (body lengths a cycle)", "to the right (°)", "in %", "shape"] {
         assert!(harness.query_by_label(title).is_some(), "no plot {title}");
     }
     // In the table and beside the line.
@@ -163,5 +163,5 @@ fn a_gait_is_not_plotted_before_it_is_known() {
     let section = move |ui: &mut egui::Ui, settings: &mut Settings| plots::section(ui, settings, &traces);
     let harness = Harness::builder().with_size(vec2(300.0, 900.0)).build_ui_state(section, Settings::default());
     assert!(harness.query_by_label("It is known once a cycle is over.").is_some());
-    assert!(harness.query_by_label("parts (%)").is_none() && harness.query_by_label("slip").is_none());
+    assert!(harness.query_by_label("in %").is_none() && harness.query_by_label("slip").is_none());
 }
