@@ -35,7 +35,7 @@ impl Six {
 
     fn parts(&self) -> SixParts<'_> {
         let SixBody { columns, bonds, collisions, rules } = &self.six;
-        SixParts { particles: &self.particles, columns, bonds, collisions, rules, road: Some(&self.road) }
+        SixParts { particles: &self.particles, columns, bonds, collisions, rules, road: Some(&self.road), pull: None }
     }
 }
 

@@ -10,7 +10,7 @@ use bevy::{
 };
 
 use crate::{
-    body::{Bonds, Collisions, Columns, ParticleId, Particles, Rules},
+    body::{Bonds, Collisions, Columns, ParticleId, Particles, Pull, Rules},
     mechanics::{
         Timeline,
         six_matrix::{Road, SixParts, Stepper, stability_limit},
@@ -32,6 +32,7 @@ pub fn six_parts(entity: EntityRef<'_>) -> Option<SixParts<'_>> {
         collisions: entity.get()?,
         rules: entity.get()?,
         road: entity.get(),
+        pull: entity.get().copied(),
     })
 }
 
@@ -42,12 +43,13 @@ pub(super) struct Fixed {
     collisions: &'static Collisions,
     rules: &'static Rules,
     road: Option<&'static Road>,
+    pull: Option<&'static Pull>,
 }
 
 impl FixedItem<'_, '_> {
     fn parts<'a>(&'a self, particles: &'a Particles, columns: &'a Columns) -> SixParts<'a> {
-        let &Self { bonds, collisions, rules, road } = self;
-        SixParts { particles, columns, bonds, collisions, rules, road }
+        let &Self { bonds, collisions, rules, road, pull } = self;
+        SixParts { particles, columns, bonds, collisions, rules, road, pull: pull.copied() }
     }
 }
 

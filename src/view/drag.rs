@@ -4,12 +4,12 @@ use bevy::{ecs::system::SystemParam, prelude::*, window::PrimaryWindow};
 
 use super::camera::{PointerOnPanel, SceneCamera};
 use crate::{
-    body::{ParticleId, Particles, Pull, Rules, Springs},
+    body::{ParticleId, Particles, Pull, Springs},
     physics::{Frozen, Shown},
 };
 
-/// How far from a particle the pointer may be to take it: as a part of how far away it is, and in rest lengths of its body's springs. So the whole of a
-/// skin can be taken, the middle of a face between four masses, too.
+/// How far from a particle the pointer may be to take it: as a part of how far away it is, and in rest lengths of its body's springs; of a body without springs in
+/// radii of its particles, which are 1 by the six-matrix model. So the whole of a skin can be taken, the middle of a face between four masses, too.
 const REACH: (f32, f32) = (0.012, 0.75);
 
 /// The body that is dragged, where its particle was taken, and how far its true place is from where it is shown.
@@ -40,15 +40,12 @@ impl Pointer<'_, '_> {
     }
 }
 
-/// Bodies with springs that move.
-type Takeable = (Without<Frozen>, Without<Rules>);
-
-/// Takes the particle under the pointer. Bodies that rules move have no springs that a hand could pull against.
+/// Takes the particle under the pointer, of any body that moves. The particles of a road are no body.
 fn take(
     buttons: Res<ButtonInput<MouseButton>>,
     on_panel: Res<PointerOnPanel>,
     pointer: Pointer,
-    bodies: Query<(Entity, &Shown, &Particles, Option<&Springs>), Takeable>,
+    bodies: Query<(Entity, &Shown, &Particles, Option<&Springs>), Without<Frozen>>,
     mut held: ResMut<Held>,
     mut commands: Commands,
 ) {

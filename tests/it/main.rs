@@ -53,6 +53,7 @@ mod saving;
 mod shapes;
 mod shows;
 mod six_files;
+mod six_hand;
 mod six_house;
 mod six_matrix;
 mod six_odd;

@@ -18,7 +18,7 @@ use crate::{
 };
 
 /// A shipped scene, every update so many of its steps.
-fn open(scene: &str, steps: u64) -> (App, Vec<Entity>) {
+pub fn open(scene: &str, steps: u64) -> (App, Vec<Entity>) {
     let mut app = stepping_app(1.0, 1);
     scenes::open(app.world_mut(), scenes::load(scene).unwrap()).unwrap();
     app.world_mut().resource_mut::<Clock>().set_steps_per_tick(steps);
@@ -26,7 +26,7 @@ fn open(scene: &str, steps: u64) -> (App, Vec<Entity>) {
     (app, bodies)
 }
 
-fn state(app: &App, bodies: &[Entity]) -> Vec<Vec<u64>> {
+pub fn state(app: &App, bodies: &[Entity]) -> Vec<Vec<u64>> {
     bodies.iter().map(|body| bits(particles(app, *body))).collect()
 }
 

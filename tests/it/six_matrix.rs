@@ -41,7 +41,7 @@ impl Six {
 
     pub fn parts(&self) -> SixParts<'_> {
         let SixBody { columns, bonds, collisions, rules } = &self.six;
-        SixParts { particles: &self.particles, columns, bonds, collisions, rules, road: self.road.as_ref() }
+        SixParts { particles: &self.particles, columns, bonds, collisions, rules, road: self.road.as_ref(), pull: None }
     }
 
     pub fn drive(&self) -> &Drive {

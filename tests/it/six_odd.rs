@@ -10,7 +10,7 @@ use wriggle::{
 use crate::six_matrix::Six;
 
 /// A body of particles and rules without a plan.
-fn bare(places: &[DVec3], bound: impl Fn(usize, usize) -> bool, rules: Vec<Rule>, road: Option<Road>) -> Six {
+pub fn bare(places: &[DVec3], bound: impl Fn(usize, usize) -> bool, rules: Vec<Rule>, road: Option<Road>) -> Six {
     let count = places.len();
     Six {
         particles: Particles::new(places.iter().map(|x| Particle::at(*x))).unwrap(),

@@ -53,10 +53,16 @@ pub(super) fn are_whole(bonds: &Bonds, position: &[DVec3]) -> bool {
     whole
 }
 
+/// The square of the length that a bond is measured by: its initial one, a radius where that is none.
+#[inline]
+pub(super) fn length_squared(square: f64) -> f64 {
+    if square < NOTHING * NOTHING { 1.0 } else { square }
+}
+
 /// The square of the longest that a bond may become.
 #[inline]
 fn longest_squared(square: f64) -> f64 {
-    LONGEST * LONGEST * if square < NOTHING * NOTHING { 1.0 } else { square }
+    LONGEST * LONGEST * length_squared(square)
 }
 
 /// The first bond that is too long, or of no finite length, and its ends.

@@ -13,14 +13,15 @@
 //! Everything on the right is of the old state. **Forces are added per step and not multiplied by t**, so t is also the clock of a gait, and none of the methods of
 //! [`integrators`](super::integrators) can step such a body. Of two particles in the same place neither acts on the other: 0/0 has no direction.
 //!
-//! One file each: the bonds B, the collisions C, the rules R and M and what they see of the road, the road with its grid, a step, and the dense form that they
-//! are tested against.
+//! One file each: the bonds B, the collisions C, the rules R and M and what they see of the road, the road with its grid, a hand that pulls at a particle (a
+//! further term H, which print does not have), a step, and the dense form that they are tested against.
 
 mod bonds;
 mod contacts;
 mod dense;
 mod drive;
 mod grid;
+mod hand;
 mod road;
 mod rules;
 mod stability;

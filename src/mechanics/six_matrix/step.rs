@@ -2,10 +2,11 @@
 
 use bevy::math::DVec3;
 
-use crate::body::{Bonds, Collisions, Columns, Particles, Rule, Rules};
+use crate::body::{Bonds, Collisions, Columns, Particles, Pull, Rule, Rules};
 
 use super::{
     bonds, contacts,
+    hand::Hand,
     road::{Road, RoadSearch},
     rules::{self, Old},
 };
@@ -25,6 +26,8 @@ pub struct SixParts<'a> {
     pub rules: &'a Rules,
     /// The road that it moves on, if any.
     pub road: Option<&'a Road>,
+    /// The hand that pulls at it, if any. The [dense form](super::Dense) knows none.
+    pub pull: Option<Pull>,
 }
 
 impl SixParts<'_> {
@@ -169,9 +172,13 @@ impl Stepper {
         contacts::add(body.collisions, road, &now.position, contact, touches);
         let old = Old { position: &now.position, velocity: &now.velocity, memory: &now.memory, touches };
         rules::apply(body.rules, &old, road, reaction, &mut next.memory);
+        let hand = Hand::of(body, dt);
         let mut finite = true;
         for (i, &damping) in body.columns.damping().iter().enumerate() {
-            let velocity = damping * now.velocity[i] + bond[i] + contact[i] + reaction[i];
+            let mut velocity = damping * now.velocity[i] + bond[i] + contact[i] + reaction[i];
+            if let Some(hand) = hand.filter(|hand| hand.particle == i) {
+                velocity += hand.pull(now.position[i], velocity);
+            }
             let position = now.position[i] + dt * velocity;
             finite &= velocity.is_finite() & position.is_finite();
             (next.velocity[i], next.position[i]) = (velocity, position);

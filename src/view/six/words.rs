@@ -32,7 +32,7 @@ type Bodies<'w, 's> = Query<
 /// One line a creature: which beams miss and what is decided, or the phase of the muscle and which legs grip.
 fn write(mut contexts: EguiContexts, bodies: Bodies) -> Result {
     let line = |(name, particles, columns, bonds, collisions, rules, road)| {
-        let parts = SixParts { particles, columns, bonds, collisions, rules, road };
+        let parts = SixParts { particles, columns, bonds, collisions, rules, road, pull: None };
         Some(format!("{}: {}", Name::as_str(name), words(&parts)?))
     };
     let lines: Vec<_> = bodies.iter().filter_map(line).collect();
