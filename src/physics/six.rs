@@ -151,7 +151,7 @@ pub(super) fn step(
 fn is_below(road: &Road, height: f64) -> bool {
     /// Higher than any creature.
     const FAR: f64 = 100.0;
-    height + FAR < road.points().iter().map(|point| point.y).fold(f64::INFINITY, f64::min)
+    height + FAR < road.lowest()
 }
 
 impl Item<'_> {

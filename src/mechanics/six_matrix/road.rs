@@ -87,6 +87,11 @@ impl Road {
         found
     }
 
+    /// The height of its lowest particle; infinite without any.
+    pub fn lowest(&self) -> f64 {
+        self.points().iter().map(|point| point.y).fold(f64::INFINITY, f64::min)
+    }
+
     /// How long its middle is, seen from above.
     pub fn length(&self) -> f64 {
         self.0.line.windows(2).map(|ends| (ends[1] - ends[0]).with_y(0.0).length()).sum()
