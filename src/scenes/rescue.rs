@@ -97,10 +97,13 @@ fn rescue_worms(time: Res<Time>, mut worms: Worms, mut messages: MessageWriter<B
     }
 }
 
+/// Who is pulled at for the first time.
+type NewlyPulled = (With<Rules>, With<Pull>, Without<Pulled>);
+
 /// Remembers at whom a hand has pulled, until all begin again.
 fn note_pulled(
     mut restarts: MessageReader<Restart>,
-    new: Query<Entity, (With<Rules>, With<Pull>, Without<Pulled>)>,
+    new: Query<Entity, NewlyPulled>,
     old: Query<Entity, (With<Pulled>, Without<Pull>)>,
     mut commands: Commands,
 ) {
