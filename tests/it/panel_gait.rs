@@ -138,7 +138,8 @@ fn a_gait_is_told_and_plotted_to_scale() {
             })
             .collect();
         // Later is further right and more is further up: both are straight lines through the extremes.
-        let is_straight = |of: fn(&((f64, f64), Pos2)) -> (f64, f64), sign: f64| {
+        type Drawn = ((f64, f64), Pos2);
+        let is_straight = |of: fn(&Drawn) -> (f64, f64), sign: f64| {
             let all: Vec<_> = points.iter().map(of).collect();
             let (low, high) = all.iter().fold((all[0], all[0]), |(low, high), &at| {
                 (if at.0 < low.0 { at } else { low }, if at.0 > high.0 { at } else { high })
