@@ -73,17 +73,17 @@ struct Bare<'a> {
 }
 
 impl pulp::NullaryFnOnce for Bare<'_> {
-    type Output = f64;
+    type Output = Lanes<8>;
 
     #[inline(always)]
-    fn call(self) -> f64 {
+    fn call(self) -> Lanes<8> {
         if self.damping > 0.0 { self.run::<true>() } else { self.run::<false>() }
     }
 }
 
 impl Bare<'_> {
     #[inline(always)]
-    fn run<const DAMPED: bool>(self) -> f64 {
+    fn run<const DAMPED: bool>(self) -> Lanes<8> {
         type Eight = Lanes<8>;
         let Self { ends: e, sums, damping } = self;
         let (zero, one) = (Eight::splat(0.0), Eight::splat(1.0));
@@ -108,7 +108,7 @@ impl Bare<'_> {
                 sums[3 + k][i] = (Eight::from(sums[3 + k][i]) - force).into();
             }
         }
-        too_long.lane(0)
+        too_long
     }
 }
 

@@ -25,12 +25,21 @@ fn parts(body: &Body, method: Method) -> BodyParts<'_> {
 }
 
 fn after(parts: &BodyParts<'_>, steps: u64) -> Particles {
+    after_all(parts, [steps])
+}
+
+/// After one run of so many steps after the other.
+fn after_all(parts: &BodyParts<'_>, runs: impl IntoIterator<Item = u64>) -> Particles {
     let dt = 0.1;
     let mut model = Model::<f64, 3>::new(parts, [], dt);
     let mut state = State::new(parts.particles.len());
     state.set_lane(0, parts.particles);
     let timeline = Timeline { dt, base_step: 0, base_time: 0.0 };
-    Advance { model: &mut model, state: &mut state, method: parts.method, timeline, first: 0, steps }.run();
+    let mut first = 0;
+    for steps in runs {
+        Advance { model: &mut model, state: &mut state, method: parts.method, timeline, first, steps }.run();
+        first += steps;
+    }
     model.note(&state);
     assert!(!model.has_exploded(0));
     let mut particles = parts.particles.clone();
@@ -77,6 +86,17 @@ fn a_regular_block_moves_as_its_springs_one_by_one_would_move_it() {
             assert!(far < 1e-12 && fast < 1e-12, "{size:?} {method:?}: {far:e}, {fast:e} apart");
             assert!(regular.positions().zip(body.particles.positions()).any(|(a, b)| a.distance(b) > 0.1));
         }
+    }
+}
+
+#[test]
+fn steps_at_once_and_one_by_one_have_the_same_bits() {
+    let body = moving((4, 3, 5), KINDS[3]);
+    for method in Method::ALL.into_iter().filter(|method| method.asks_forces_alone()) {
+        let parts = parts(&body, method);
+        let at_once = bits(&after(&parts, 60));
+        assert!(bits(&after_all(&parts, [1; 60])) == at_once, "{method:?}, one by one");
+        assert!(bits(&after_all(&parts, [2, 7, 51])) == at_once, "{method:?}, 2, 7 and 51");
     }
 }
 

@@ -94,9 +94,10 @@ impl Layer {
     }
 
     /// Kicks its masses, which stand where they are to feel the forces, and lets them drift on. What comes to be below a floor is put back on it and loses what of
-    /// its velocity leads down. What springs pull back with is zero afterwards.
+    /// its velocity leads down. That is the end of a step; `ahead` is for how long they drift on from there, into the next. What springs pull back with is zero
+    /// afterwards.
     #[inline(always)]
-    pub(super) fn kick(&mut self, rule: KickDrift, gravity: f64, floor: bool, sums: &mut Sums) {
+    pub(super) fn kick(&mut self, rule: KickDrift, gravity: f64, floor: bool, ahead: f64, sums: &mut Sums) {
         let rows = self.rows();
         let [inverse_mass] = self.inverse_mass.each().map(|column| eights(column, &rows));
         let columns = zip(self.position.each_mut(), self.velocity.each_mut());
@@ -105,10 +106,12 @@ impl Layer {
             let f = eights(f, &rows);
             let columns = [x, v, w, b].map(|column| eights_mut(column, &rows));
             // Each on its own: a branch in the loop costs twice its time.
-            match axis {
-                1 if floor => kick::<true>(rule, inverse_mass, gravity, f, columns),
-                1 => kick::<false>(rule, inverse_mass, gravity, f, columns),
-                _ => kick::<false>(rule, inverse_mass, 0.0, f, columns),
+            let gravity = if axis == 1 { gravity } else { 0.0 };
+            match (floor && axis == 1, ahead > 0.0) {
+                (false, false) => kick::<false, false>(rule, inverse_mass, gravity, ahead, f, columns),
+                (false, true) => kick::<false, true>(rule, inverse_mass, gravity, ahead, f, columns),
+                (true, false) => kick::<true, false>(rule, inverse_mass, gravity, ahead, f, columns),
+                (true, true) => kick::<true, true>(rule, inverse_mass, gravity, ahead, f, columns),
             }
         }
     }
@@ -129,15 +132,17 @@ impl Layer {
 
 /// Kicks along one axis: positions and velocities, by the sums forward, and back within the layer and from the one before.
 #[inline(always)]
-fn kick<const FLOOR: bool>(
+fn kick<const FLOOR: bool, const AHEAD: bool>(
     rule: KickDrift,
     inverse_mass: &[[f64; LANES]],
     gravity: f64,
+    ahead: f64,
     f: &[[f64; LANES]],
     [x, v, w, b]: [&mut [[f64; LANES]]; 4],
 ) {
     let [dt, after, rate, kept] = [rule.dt, rule.after, rule.rate, rule.kept].map(Eight::splat);
-    let (zero, gravity, count) = (Eight::splat(0.0), Eight::splat(gravity), inverse_mass.len());
+    let (zero, gravity, ahead, count) =
+        (Eight::splat(0.0), Eight::splat(gravity), Eight::splat(ahead), inverse_mass.len());
     let (x, v, f, w, b) = (&mut x[..count], &mut v[..count], &f[..count], &mut w[..count], &mut b[..count]);
     for i in 0..count {
         let inverse = Eight::from(inverse_mass[i]);
@@ -145,15 +150,17 @@ fn kick<const FLOOR: bool>(
         // What is pinned has no weight, and no velocity that a damping could take.
         let a = force * inverse - zero.if_below(inverse, gravity, zero);
         let speed = Eight::from(v[i]);
-        let speed = speed * kept + (a - rate * speed) * dt;
-        let place = Eight::from(x[i]) + speed * after;
+        let mut speed = speed * kept + (a - rate * speed) * dt;
+        let mut place = Eight::from(x[i]) + speed * after;
         if FLOOR {
             let least = zero.if_below(inverse, zero, Eight::splat(f64::NEG_INFINITY));
-            v[i] = place.if_below(least, speed.if_below(zero, zero, speed), speed).into();
-            x[i] = place.if_below(least, least, place).into();
-        } else {
-            (x[i], v[i]) = (place.into(), speed.into());
+            speed = place.if_below(least, speed.if_below(zero, zero, speed), speed);
+            place = place.if_below(least, least, place);
         }
+        if AHEAD {
+            place += speed * ahead;
+        }
+        (x[i], v[i]) = (place.into(), speed.into());
         (w[i], b[i]) = (zero.into(), zero.into());
     }
 }

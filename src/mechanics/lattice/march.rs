@@ -35,9 +35,11 @@ impl Slab<'_, Move<'_>> {
         self.task.deal(self.layers);
         let (reach, damped) = (self.task.motion.rule.before, self.ask == Ask::Damped);
         let mut found = false;
-        for _ in 0..steps {
+        for step in 0..steps {
+            let [still, ahead] = [step == 0, step + 1 < steps].map(|drifts| if drifts { reach } else { 0.0 });
+            (self.task.still, self.task.ahead) = (still, ahead);
             if let (Some(border), Some(layer)) = (before, self.layers.first()) {
-                border.layer.send(|into| into.foresee(layer, reach, damped));
+                border.layer.send(|into| into.foresee(layer, still, damped));
             }
             found |= pulp::Arch::new().dispatch(self.again());
         }

@@ -180,7 +180,7 @@ impl LatticeRows {
             (x, v) = (more_x, more_v);
             let borders = [before, behind.next()];
             [_, before] = borders;
-            Move { motion, end: start + count, layer, borders, position, velocity }
+            Move { motion, still: 0.0, ahead: 0.0, end: start + count, layer, borders, position, velocity }
         });
         march(slabs, steps)
     }

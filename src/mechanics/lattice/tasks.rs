@@ -68,6 +68,10 @@ pub(super) struct Motion<'a> {
 /// Takes whole steps with layers that lie where they belong.
 pub(super) struct Move<'a> {
     pub(super) motion: Motion<'a>,
+    /// For how long masses are still to drift until they feel the springs, in the first of many steps; and for how long they drift on from the end of a step, in all
+    /// but the last. So the two drifts between the kicks of two steps are one way through the layer.
+    pub(super) still: f64,
+    pub(super) ahead: f64,
     /// The layer behind the slab.
     pub(super) end: usize,
     /// How many masses a layer has.
@@ -104,14 +108,14 @@ impl Task for &mut Move<'_> {
     fn read(&mut self, z: usize, layer: &mut Layer) {
         match self.borders {
             [_, Some(border)] if z == self.end => border.layer.receive(|first| core::mem::swap(layer, first)),
-            _ => layer.drift(self.motion.rule.before),
+            _ => layer.drift(self.still),
         }
     }
 
     #[inline(always)]
     fn write(&mut self, _: usize, layer: &mut Layer, sums: &mut Sums) {
         let Motion { rule, gravity, floor, .. } = self.motion;
-        layer.kick(rule, gravity, floor, sums);
+        layer.kick(rule, gravity, floor, self.ahead, sums);
     }
 
     #[inline(always)]
