@@ -57,6 +57,8 @@ mod six_hand;
 mod six_house;
 mod six_matrix;
 mod six_odd;
+#[cfg(feature = "window")]
+mod six_rescue;
 mod six_roads;
 mod six_signs;
 mod stability;
