@@ -10,7 +10,7 @@ use super::{
 use crate::{
     creatures::Look,
     physics::Shown,
-    scenes::{Camera as Place, CurrentScene, FIELD_OF_VIEW},
+    scenes::{Camera as Place, CurrentScene, FIELD_OF_VIEW, SceneBodies},
 };
 
 /// Where the camera is kept still while the pointer is used by a panel, in [`PostUpdate`]. Whoever draws panels writes [`PointerOnPanel`] before it.
@@ -172,11 +172,14 @@ fn follow(
     time: Res<Time<Real>>,
     following: Res<FollowWorm>,
     selected: Option<Res<Selected>>,
+    scene: Option<Res<SceneBodies>>,
     bodies: Query<&Shown, With<Look>>,
     mut cameras: Query<&mut PanOrbitCamera, With<SceneCamera>>,
 ) {
     let led = selected.and_then(|selected| bodies.get(selected.0?).ok());
-    let Some(shown) = led.or_else(|| bodies.iter().next()).filter(|_| following.0) else { return };
+    // As the scene lists them: queries go by what components a body has just now.
+    let first = || scene.iter().flat_map(|scene| &scene.0).find_map(|body| bodies.get(*body).ok());
+    let Some(shown) = led.or_else(first).filter(|_| following.0) else { return };
     let count = shown.positions().len().max(1) as f32;
     let middle = shown.positions().iter().sum::<Vec3>() / count + Vec3::Y * 0.4;
     let part = 1.0 - (-QUICKNESS * time.delta_secs()).exp();

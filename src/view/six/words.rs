@@ -9,6 +9,7 @@ use bevy_egui::{
 use crate::{
     body::{Bonds, Collisions, Columns, Particles, Rule, Rules},
     mechanics::six_matrix::{Road, SixParts, look},
+    scenes::SceneBodies,
 };
 
 pub(in crate::view) fn plugin(app: &mut App) {
@@ -30,12 +31,14 @@ type Bodies<'w, 's> = Query<
 >;
 
 /// One line a creature: which beams miss and what is decided, or the phase of the muscle and which legs grip.
-fn write(mut contexts: EguiContexts, bodies: Bodies) -> Result {
+fn write(mut contexts: EguiContexts, scene: Option<Res<SceneBodies>>, bodies: Bodies) -> Result {
     let line = |(name, particles, columns, bonds, collisions, rules, road)| {
         let parts = SixParts { particles, columns, bonds, collisions, rules, road, pull: None };
         Some(format!("{}: {}", Name::as_str(name), words(&parts)?))
     };
-    let lines: Vec<_> = bodies.iter().filter_map(line).collect();
+    // As the scene lists them: queries go by what components a body has just now.
+    let listed = scene.iter().flat_map(|scene| &scene.0);
+    let lines: Vec<_> = listed.filter_map(|body| line(bodies.get(*body).ok()?)).collect();
     if lines.is_empty() {
         return Ok(());
     }
