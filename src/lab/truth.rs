@@ -34,7 +34,10 @@ impl Truth {
         };
         if truth.error() > SURE * problem.budget {
             let error = 100.0 * truth.error();
-            let what = format!("{what} by {error:.2} % when steps that are small become twice as large");
+            let most = 100.0 * SURE * problem.budget;
+            let what = format!(
+                "{what} by {error:.2} % when steps that are small become twice as large; {most:.2e} % would tell enough for this budget"
+            );
             return Err(LabError::Unsupported { scene: problem.name.clone(), what });
         }
         Ok(truth)

@@ -116,8 +116,8 @@ impl Item<'_> {
     }
 }
 
-/// What the last tick knew of its bodies, with steps of `dt`. Nothing of it is left once a body changes, and what did not change is not looked at again:
-/// of thousands of bodies that takes longer than their steps.
+/// What the last tick knew of its bodies, with steps of `dt`. Nothing of it is left once a body changes. What did not change is not looked at again: where bodies
+/// are many, that waits for memory.
 #[derive(Default)]
 pub(super) struct Kept {
     dt: f64,

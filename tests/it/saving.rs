@@ -113,19 +113,25 @@ fn what_cannot_be_written_leaves_the_old_file_and_nothing_else() {
     assert_eq!(files(&target), ["inside"]);
 }
 
+/// Saves the garden over a file that says "old", in a process of its own, since the limits on files that a shell sets hold for all of one.
+#[cfg(target_os = "linux")]
+fn save_limited(limits: &str, path: &Path) -> std::process::Output {
+    fs::write(path, "old").unwrap();
+    let helper = "exec \"$0\" saving::helper_saves_the_garden --exact --ignored --nocapture";
+    std::process::Command::new("sh")
+        .args(["-c", &format!("{limits}; {helper}")])
+        .arg(std::env::current_exe().unwrap())
+        .env("WRIGGLE_TEST_SAVE_TO", path)
+        .output()
+        .unwrap()
+}
+
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_disk_leaves_the_old_file_and_nothing_else() {
-    // A process of its own, because the limit on the size of files that stands in for a full disk holds for all of it.
     let folder = TempDir::new().unwrap();
     let path = folder.path().join("mine.scene.ron");
-    fs::write(&path, "old").unwrap();
-    let output = std::process::Command::new("sh")
-        .args(["-c", "ulimit -f 0; trap '' XFSZ; exec \"$0\" saving::helper_saves_the_garden --exact --ignored"])
-        .arg(std::env::current_exe().unwrap())
-        .env("WRIGGLE_TEST_SAVE_TO", &path)
-        .output()
-        .unwrap();
+    let output = save_limited("ulimit -f 0; trap '' XFSZ", &path);
     let said = String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr);
     assert!(!output.status.success() && said.contains("could not be written"), "{said}");
     assert_eq!(fs::read_to_string(&path).unwrap(), "old");
@@ -136,20 +142,11 @@ fn a_full_disk_leaves_the_old_file_and_nothing_else() {
 #[test]
 fn a_crash_in_the_middle_of_writing_leaves_the_old_file() {
     use std::os::unix::process::ExitStatusExt;
-    // The same limit kills a process that does not ignore its signal, at the first byte that it writes: sooner than it can clean up.
+    const SIGXFSZ: i32 = 25;
+    // Who does not ignore its signal is killed at the first byte: sooner than it can clean up.
     let folder = TempDir::new().unwrap();
     let path = folder.path().join("mine.scene.ron");
-    fs::write(&path, "old").unwrap();
-    let output = std::process::Command::new("sh")
-        .args([
-            "-c",
-            "ulimit -c 0; ulimit -f 0; exec \"$0\" saving::helper_saves_the_garden --exact --ignored --nocapture",
-        ])
-        .arg(std::env::current_exe().unwrap())
-        .env("WRIGGLE_TEST_SAVE_TO", &path)
-        .output()
-        .unwrap();
-    const SIGXFSZ: i32 = 25;
+    let output = save_limited("ulimit -c 0; ulimit -f 0", &path);
     assert_eq!(output.status.signal(), Some(SIGXFSZ), "{}", String::from_utf8_lossy(&output.stderr));
     assert_eq!(fs::read_to_string(&path).unwrap(), "old");
 }
