@@ -6,6 +6,8 @@ mod support;
 mod alone;
 mod animal;
 mod animals;
+#[cfg(feature = "window")]
+mod camera;
 mod chart;
 mod choosing;
 mod cli;
