@@ -20,7 +20,7 @@ use super::{
     traces::Traces,
 };
 use crate::{
-    body::{Particles, Rules},
+    body::{Particles, Pull, Rules},
     creatures::library,
     mechanics::integrators::Method,
     physics::{BodyFrozen, BodyInverted, Clock, Frozen, Plan, Restart, Shown, Steer, WavesCut, Work},
@@ -42,6 +42,8 @@ pub struct Known {
     selected: usize,
     /// The animal that is led.
     led: Option<Entity>,
+    /// The body that is pulled at.
+    pulled: Option<Entity>,
     frozen: HashMap<Entity, String>,
     /// What was said of a bad file since a scene was opened.
     bad_file: Option<String>,
@@ -88,8 +90,14 @@ pub fn read(world: &mut World) {
                 open(world, &mut settings, &mut known);
             }
             let led = world.get_resource::<Selected>().and_then(|selected| selected.0);
-            if opened || led != known.led || is_stale(world, &settings, &known) {
+            let pulled = world.query_filtered::<Entity, With<Pull>>().iter(world).next();
+            let taken = pulled.filter(|_| pulled != known.pulled);
+            known.pulled = pulled;
+            if opened || led != known.led || taken.is_some() || is_stale(world, &settings, &known) {
                 read_bodies(world, &mut settings, &known);
+                // Whoever takes a body in hand wants to see that one.
+                let place = settings.bodies.iter().position(|body| Some(body.entity) == taken);
+                settings.selected = place.unwrap_or(settings.selected);
                 share_selection(world, &mut settings, &mut known);
                 read_parameters(world, &mut settings, &mut known, opened);
             }

@@ -3,6 +3,7 @@
 use bevy::{camera::RenderTargetInfo, math::DVec3, prelude::*};
 use bevy_egui::egui;
 use wriggle::{
+    body::{ParticleId, Pull},
     creatures::library,
     panel::{
         self, Settings,
@@ -115,6 +116,32 @@ fn the_animal_that_is_led_and_the_body_that_is_shown_are_one() {
     // What belongs to nobody changes nothing.
     bridge::read(app.world_mut());
     assert_eq!((shown(&app), app.world().resource::<Selected>().0), (bodies[3], Some(bodies[3])));
+}
+
+#[test]
+fn the_body_that_is_taken_in_hand_is_shown() {
+    let mut app = App::new();
+    app.init_resource::<Settings>().init_resource::<bridge::Known>();
+    for scene in ["jelly-lab", "rough-road"] {
+        scenes::open(app.world_mut(), scenes::load(scene).unwrap()).unwrap();
+        let bodies = app.world().resource::<scenes::SceneBodies>().0.clone();
+        bridge::read(app.world_mut());
+        let shown = |app: &App| app.world().resource::<Settings>().body().unwrap().entity;
+        assert_eq!(shown(&app), bodies[0]);
+        app.world_mut().entity_mut(bodies[1]).insert(Pull { particle: ParticleId(0), target: DVec3::ZERO });
+        bridge::read(app.world_mut());
+        assert_eq!(shown(&app), bodies[1], "{scene}");
+        let settings = app.world().resource::<Settings>();
+        let own = format!("{}.", settings.body().unwrap().name);
+        assert!(settings.parameters.iter().any(|setting| setting.path.starts_with(&own)), "{scene}");
+        // While it is held another one can be chosen in the panel; what is let go stays shown.
+        app.world_mut().resource_mut::<Settings>().selected = 0;
+        bridge::read(app.world_mut());
+        assert_eq!(shown(&app), bodies[0], "{scene}");
+        app.world_mut().entity_mut(bodies[1]).remove::<Pull>();
+        bridge::read(app.world_mut());
+        assert_eq!(shown(&app), bodies[0], "{scene}");
+    }
 }
 
 /// A camera that looks along −z at the middle of the blocks, 100 pixels for a length at the plane of the middle.
