@@ -9,11 +9,13 @@ use bevy::{
 
 use super::{
     clay::tint,
+    light::SUN,
     paint::Paint,
     skins::{Cloth, SkinOf},
 };
 use crate::{
-    body::{Lattice, Neighbours},
+    body::{Ground, Lattice, Neighbours},
+    mechanics::ground_distance,
     physics::Shown,
     scenes::SceneMember,
 };
@@ -22,11 +24,18 @@ use crate::{
 const OPACITY: f32 = 0.82;
 /// How far the skin is from the masses, in lengths: what lies flat on the ground would otherwise be drawn in the plane of the ground, now above it and now below.
 const THICKNESS: f32 = 0.05;
+/// How dark its shade on the ground is, and how far above the ground it is drawn.
+const SHADE: f32 = 0.42;
+const LIFT: f32 = 0.012;
+/// So far below its place the shade's mesh has its origin: what shines through is drawn from far to near by its origin, and the shade lies behind the skin.
+const SUNK: f32 = 50.0;
 
 /// The skin that a block wears.
 #[derive(Component)]
 pub(super) struct JellySkin {
     mesh: Handle<Mesh>,
+    /// Its shade on the ground, where no shadow map draws one.
+    shade: Option<Handle<Mesh>>,
     /// The particle of each vertex.
     outer: Vec<usize>,
     triangles: Vec<[u32; 3]>,
@@ -50,32 +59,51 @@ pub(super) fn dress(body: Entity, lattice: Lattice, cloth: &mut Cloth<'_>, comma
     let (outer, triangles) = surface(lattice.size());
     let [red, green, blue, _] = tint(skin_color(lattice));
     let count = outer.len();
-    let mesh = Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::default())
-        .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, vec![[0.0; 3]; count])
-        .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, vec![[0.0, 1.0, 0.0]; count])
-        .with_inserted_attribute(Mesh::ATTRIBUTE_COLOR, vec![[red, green, blue, OPACITY]; count])
-        .with_inserted_indices(Indices::U32(triangles.as_flattened().to_vec()));
-    let mesh = cloth.meshes.add(mesh);
-    let paint = cloth.paints.add(Paint { sheer: true, ..Paint::glossy(cloth.quality.shadows(), 0.8) });
-    let skin = JellySkin { mesh: mesh.clone(), outer, triangles, positions: Vec::new(), normals: Vec::new() };
-    let root = commands.spawn((SceneMember, SkinOf(body), skin, Transform::default(), Visibility::default())).id();
-    // The mesh moves away from where its bounds were taken.
-    commands.spawn((Mesh3d(mesh), MeshMaterial3d(paint), NoFrustumCulling, ChildOf(root)));
+    let mut mesh = |color: [f32; 4]| {
+        let mesh = Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::default())
+            .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, vec![[0.0; 3]; count])
+            .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, vec![[0.0, 1.0, 0.0]; count])
+            .with_inserted_attribute(Mesh::ATTRIBUTE_COLOR, vec![color; count])
+            .with_inserted_indices(Indices::U32(triangles.as_flattened().to_vec()));
+        cloth.meshes.add(mesh)
+    };
+    let shadows = cloth.quality.shadows();
+    let skin = mesh([red, green, blue, OPACITY]);
+    let shade = (!shadows).then(|| mesh([0.02, 0.03, 0.01, 1.0]));
+    let paint = cloth.paints.add(Paint { sheer: true, ..Paint::glossy(shadows, 0.8) });
+    // The meshes move away from where their bounds were taken.
+    let skin_child = (Mesh3d(skin.clone()), MeshMaterial3d(paint), NoFrustumCulling);
+    let shade_child = shade.clone().map(|shade| {
+        let paint = cloth.paints.add(Paint::blot(SHADE));
+        (Mesh3d(shade), MeshMaterial3d(paint), Transform::from_xyz(0.0, -SUNK, 0.0), NoFrustumCulling)
+    });
+    let worn = JellySkin { mesh: skin, shade, outer, triangles, positions: Vec::new(), normals: Vec::new() };
+    let root = commands.spawn((SceneMember, SkinOf(body), worn, Transform::default(), Visibility::default())).id();
+    commands.spawn((skin_child, ChildOf(root)));
+    if let Some(shade) = shade_child {
+        commands.spawn((shade, ChildOf(root)));
+    }
     root
 }
 
 /// Lays every skin over the masses of its body where they are shown.
 pub(super) fn follow(
-    bodies: Query<&Shown>,
+    bodies: Query<(&Shown, Option<&Ground>)>,
     mut skins: Query<(&SkinOf, &mut JellySkin)>,
     mut meshes: ResMut<Assets<Mesh>>,
 ) {
     for (of, mut skin) in &mut skins {
-        let Ok(shown) = bodies.get(of.0) else { continue };
-        let JellySkin { mesh, outer, triangles, positions, normals } = &mut *skin;
-        let Some(mut mesh) = meshes.get_mut(&*mesh) else { continue };
+        let Ok((shown, ground)) = bodies.get(of.0) else { continue };
+        let JellySkin { mesh, shade, outer, triangles, positions, normals } = &mut *skin;
         positions.clear();
         positions.extend(outer.iter().map(|&i| shown.positions().get(i).copied().unwrap_or_default().to_array()));
+        if let Some(mut shade) = shade.as_ref().and_then(|shade| meshes.get_mut(shade))
+            && let Some(VertexAttributeValues::Float32x3(values)) = shade.attribute_mut(Mesh::ATTRIBUTE_POSITION)
+        {
+            values.clear();
+            values.extend(positions.iter().map(|at| (shaded(Vec3::from(*at), ground) + SUNK * Vec3::Y).to_array()));
+        }
+        let Some(mut mesh) = meshes.get_mut(&*mesh) else { continue };
         normals.clear();
         normals.resize(outer.len(), Vec3::ZERO);
         for corners in triangles {
@@ -97,6 +125,18 @@ pub(super) fn follow(
             values.extend(normals.iter().map(Vec3::to_array));
         }
     }
+}
+
+/// Where what is at `at` throws its shade; of a block without a ground there is none. Of the faces that are laid down on the ground so, those that face the sun
+/// face up, and no other is drawn: one layer of shade.
+fn shaded(at: Vec3, ground: Option<&Ground>) -> Vec3 {
+    let Some(ground) = ground else { return Vec3::ZERO };
+    let (distance, normal) = ground_distance(ground, at.as_dvec3());
+    let normal = normal.as_vec3();
+    // Along the sun's rays as far as the plane under it; a slope that lies in the dark by itself gets it straight below.
+    let away = distance as f32 - LIFT;
+    let facing = normal.dot(SUN);
+    if facing > 0.1 { at - SUN * (away / facing) } else { at - normal * away }
 }
 
 /// Whether a grid has a surface: a row of masses has none.
@@ -161,6 +201,16 @@ mod tests {
             })
             .sum();
         assert!((volume - 3.0 * 2.0 * 4.0).abs() < 1e-4, "{volume}");
+    }
+
+    #[test]
+    fn a_shade_lies_on_the_ground_away_from_the_sun() {
+        for at in [Vec3::new(1.0, 4.0, -2.0), Vec3::new(0.0, 0.0, 3.0)] {
+            let shade = shaded(at, Some(&Ground::Flat));
+            assert!((shade.y - LIFT).abs() < 1e-6, "{shade}");
+            assert!((at - shade).cross(SUN).length() < 1e-5, "{shade} is not behind {at}");
+        }
+        assert_eq!(shaded(Vec3::Y, None), Vec3::ZERO);
     }
 
     #[test]

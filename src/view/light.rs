@@ -9,7 +9,7 @@ use super::quality::Quality;
 use crate::scenes::SceneMember;
 
 /// Towards the sun: it stands behind the viewer's left shoulder, so that shadows fall to the right and back.
-const SUN: Vec3 = Vec3::new(-0.5, 0.76, 0.46);
+pub(super) const SUN: Vec3 = Vec3::new(-0.5, 0.76, 0.46);
 
 /// Spawns the sun of a scene.
 pub(super) fn shine(quality: Quality, commands: &mut Commands) {
