@@ -8,7 +8,7 @@ use bevy::{
     prelude::*,
 };
 
-/// A colour and, in its fourth number, how far the wind moves the vertex (lengths at full wind).
+/// A colour and, in its fourth number, how far the wind moves the vertex (lengths at full wind), or, below 0, how much of its paint's maps it does without.
 pub(crate) type Tint = [f32; 4];
 
 /// The colour of a web code such as `0xd9825b`, standing still in the wind.
@@ -172,6 +172,15 @@ impl Clay {
             .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, self.normals)
             .with_inserted_attribute(Mesh::ATTRIBUTE_COLOR, self.tints)
             .with_inserted_indices(Indices::U32(self.indices))
+    }
+
+    /// The finished mesh of what lies flat, with its place on maps that cover so many lengths; they lie along x and z.
+    pub fn fire_mapped(self, covers: f32) -> Mesh {
+        let places: Vec<_> = self.positions.iter().map(|at| [at[0] / covers, at[2] / covers]).collect();
+        let tangents = vec![[1.0, 0.0, 0.0, -1.0]; places.len()];
+        self.fire()
+            .with_inserted_attribute(Mesh::ATTRIBUTE_UV_0, places)
+            .with_inserted_attribute(Mesh::ATTRIBUTE_TANGENT, tangents)
     }
 
     /// How many triangles there are so far.

@@ -15,6 +15,7 @@ mod half;
 mod help;
 mod jelly;
 mod light;
+mod maps;
 mod meadow;
 mod offscreen;
 mod paint;
@@ -92,26 +93,25 @@ struct Decor;
 /// Clears away the surroundings of the last scene and sets up those of this one.
 fn decorate(
     scene: Res<CurrentScene>,
-    quality: Res<Quality>,
     old: Query<Entity, With<Decor>>,
     roads: Query<&Road>,
     mut commands: Commands,
-    mut meshes: ResMut<Assets<Mesh>>,
-    mut paints: ResMut<Assets<paint::Paint>>,
+    mut cloth: skins::Cloth,
 ) {
+    let skins::Cloth { quality, meshes, paints, images } = &mut cloth;
     for entity in &old {
         commands.entity(entity).try_despawn();
     }
-    light::shine(*quality, &mut commands);
+    light::shine(**quality, &mut commands);
     match scene.file.props {
-        Props::Garden { seed } => garden::plant(seed, *quality, &mut commands, &mut meshes, &mut paints),
+        Props::Garden { seed } => garden::plant(seed, **quality, &mut commands, meshes, paints),
         Props::None => match &scene.file.ground {
             Some(ground) => {
                 let scenes::Camera::Orbit { target: (x, y, z), distance, .. } = scene.file.camera;
                 let place = meadow::Place { middle: DVec3::new(x, y, z).as_vec3(), distance: distance as f32 };
-                meadow::set_up(ground, place, *quality, &mut commands, &mut meshes, &mut paints);
+                meadow::set_up(ground, place, **quality, &mut commands, meshes, paints, images);
             }
-            None => studio::set_up(six::lowest(roads.iter()), *quality, &mut commands, &mut meshes, &mut paints),
+            None => studio::set_up(six::lowest(roads.iter()), **quality, &mut commands, meshes, paints),
         },
     }
 }

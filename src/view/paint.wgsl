@@ -32,6 +32,10 @@ const SUN: vec3<f32> = vec3(1.95, 1.68, 1.25);
 const SKY: vec3<f32> = vec3(0.33, 0.45, 0.64);
 const BOUNCE: vec3<f32> = vec3(0.24, 0.25, 0.13);
 const HAZE: vec3<f32> = vec3(0.68, 0.82, 0.90);
+// How much haze a unit of the way to the eye adds at the ground, from where on, and at which height it is thinner by e: who looks down from a hill sees clearly.
+const HAZINESS: f32 = 0.0075;
+const CLEAR: f32 = 24.0;
+const HAZE_HEIGHT: f32 = 12.0;
 
 @vertex
 fn vertex(in: Vertex) -> VertexOutput {
@@ -80,8 +84,10 @@ fn tone(x: vec3<f32>) -> vec3<f32> {
 fn fragment(in: VertexOutput, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
     var albedo = in.color.rgb * paint.tint.rgb;
 #ifdef MAPPED
-    albedo *= textureSample(color_map, map_sampler, in.uv).rgb;
-    let bump = textureSample(bump_map, map_sampler, in.uv).xyz * 2.0 - 1.0;
+    // Below 0, the fourth number of the colour is how much of the maps is left out.
+    let mapped = clamp(1.0 + in.color.a, 0.0, 1.0);
+    albedo *= mix(vec3(1.0), textureSample(color_map, map_sampler, in.uv).rgb, mapped);
+    let bump = mix(vec3(0.0, 0.0, 1.0), textureSample(bump_map, map_sampler, in.uv).xyz * 2.0 - 1.0, mapped);
 #endif
     let to_eye = view.world_position - in.world_position.xyz;
     let distance = length(to_eye);
@@ -128,7 +134,11 @@ fn fragment(in: VertexOutput, @builtin(front_facing) front: bool) -> @location(0
 #endif
     }
 #endif
-    let fog = (1.0 - exp(-max(distance - 24.0, 0.0) * 0.0058)) * paint.finish.w;
+    // The mean of e^(−y/h) over the way from the eye's height to here.
+    let eye_height = max(view.world_position.y, 0.0) / HAZE_HEIGHT;
+    let rise = max(in.world_position.y, 0.0) / HAZE_HEIGHT - eye_height;
+    let thinned = exp(-eye_height) * select((1.0 - exp(-rise)) / rise, 1.0 - 0.5 * rise, abs(rise) < 0.01);
+    let fog = (1.0 - exp(-max(distance - CLEAR, 0.0) * HAZINESS * thinned)) * paint.finish.w;
     let shown = tone(mix(color, HAZE, fog));
 #ifdef SHEER
     return vec4(shown, in.color.a * paint.tint.a);

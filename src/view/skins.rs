@@ -54,7 +54,7 @@ type Bodies<'w, 's> = Query<
     ),
 >;
 
-/// What skins are made from.
+/// What skins and surroundings are made from.
 #[derive(SystemParam)]
 pub(super) struct Cloth<'w> {
     pub quality: Res<'w, Quality>,

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use bevy::{light::NotShadowCaster, math::DVec3, prelude::*};
 use rand::{RngExt, SeedableRng, rngs::SmallRng};
 
+mod sward;
 mod turf;
 
 use super::{
@@ -51,6 +52,7 @@ pub(super) fn set_up(
     commands: &mut Commands,
     meshes: &mut Assets<Mesh>,
     paints: &mut Assets<Paint>,
+    images: &mut Assets<Image>,
 ) {
     let (middle, shadows) = (place.middle, quality.shadows());
     let mut random = SmallRng::seed_from_u64(4);
@@ -61,7 +63,8 @@ pub(super) fn set_up(
         if clay.triangles() == 0 {
             return;
         }
-        let (mesh, paint) = (meshes.add(clay.fire()), paints.add(paint));
+        let mesh = if paint.color_map.is_some() { clay.fire_mapped(sward::COVERS) } else { clay.fire() };
+        let (mesh, paint) = (meshes.add(mesh), paints.add(paint));
         for &place in places {
             let looks = (Mesh3d(mesh.clone()), MeshMaterial3d(paint.clone()), Transform::from_translation(place));
             let root = (SceneMember, Decor, Transform::default(), Visibility::default());
@@ -83,7 +86,10 @@ pub(super) fn set_up(
     spawn(backdrop::hills(&mut random, quality, TREES), thin_haze, false, with_the_view, &here);
     let middle = if tile.is_some() { Vec3::ZERO } else { middle };
     let lying = without_walls(ground);
-    spawn(land(&lying, middle), Paint::matte(shadows), false, tile, &here);
+    let mapped = quality == Quality::High;
+    let [color_map, bump_map] = if mapped { sward::maps().map(|map| Some(images.add(map))) } else { [None, None] };
+    let soil = Paint { color_map, bump_map, ..Paint::matte(shadows) };
+    spawn(land(&lying, middle, mapped), soil, false, tile, &here);
     spawn(walls(ground), Paint::matte(shadows), true, None, &here);
     let [leaves, stones] = scattered(&lying, middle, quality, &mut random);
     let around: Vec<_> =
@@ -159,18 +165,24 @@ fn is_sand(ground: &Ground, x: f32, z: f32) -> bool {
 }
 
 /// Its colour: grass in broad patches with a faint chequer that shows how far an animal goes, sand in ripples, rock where it is steep.
-fn color(ground: &Ground, x: f32, z: f32, up: f32) -> Tint {
+fn color(ground: &Ground, x: f32, z: f32, up: f32, mapped: bool) -> Tint {
     let chequer = if (x.floor() + z.floor()) as i64 % 2 == 0 { 1.05 } else { 0.95 };
-    let soft = if is_sand(ground, x, z) {
+    let sandy = is_sand(ground, x, z);
+    let soft = if sandy {
         let ripple = (z * 2.4 + (x * 0.7).sin() * 0.8 + (x * 0.23 + z * 0.1).sin() * 2.0).sin() * 0.5 + 0.5;
         shade(blend(tint(0xd3b078), tint(0xe9d3a2), ripple), 0.62)
     } else {
         // As the garden's lawn: blades are brighter than what they stand on.
-        shade(blend(green(x, z), tint(0x7a7440), 0.2), 0.68)
+        let light = if mapped { 0.68 / sward::MEAN } else { 0.68 };
+        shade(blend(green(x, z), tint(0x7a7440), 0.2), light)
     };
     let strata = (x * 1.7 + z * 0.35).sin() * 0.5 + 0.5;
     let rock = shade(blend(tint(0x9a8266), tint(0xb79f80), strata), 0.7);
-    blend(rock, shade(soft, chequer), ((up - 0.45) / 0.35).clamp(0.0, 1.0))
+    let grows = ((up - 0.45) / 0.35).clamp(0.0, 1.0);
+    let [red, green, blue, _] = blend(rock, shade(soft, chequer), grows);
+    // Neither sand nor rock is covered with the map of grass.
+    let bare = if sandy { 1.0 } else { 1.0 - grows };
+    [red, green, blue, if mapped { -bare } else { 0.0 }]
 }
 
 /// The colour of grass at a spot, in patches of several sizes that repeat themselves with the tile.
@@ -192,7 +204,7 @@ fn lines(middle: f32, also: &[f32]) -> Vec<f32> {
     lines
 }
 
-fn land(ground: &Ground, middle: Vec3) -> Clay {
+fn land(ground: &Ground, middle: Vec3, mapped: bool) -> Clay {
     let (mut extra, mut extra_z) = (Vec::new(), Vec::new());
     if let Ground::Terrain(terrain) = ground {
         for surface in terrain.surfaces() {
@@ -221,7 +233,7 @@ fn land(ground: &Ground, middle: Vec3) -> Clay {
             Ground::Flat => Vec3::Y,
             Ground::Terrain(_) => ground_distance(ground, at.as_dvec3()).1.as_vec3(),
         };
-        (at, normal, color(ground, x, z, normal.y))
+        (at, normal, color(ground, x, z, normal.y, mapped))
     });
     clay
 }

@@ -2,14 +2,12 @@
 //!
 //! A map is a tile: once around the body (u from 0 in the middle of the belly over ½ on the back) and [`TILE`] segments along it (v).
 
-use bevy::{
-    asset::RenderAssetUsages,
-    image::{ImageAddressMode, ImageFilterMode, ImageSampler, ImageSamplerDescriptor},
-    prelude::*,
-    render::render_resource::{Extent3d, TextureDimension, TextureFormat},
-};
+use bevy::{prelude::*, render::render_resource::TextureFormat};
 
-use crate::view::clay::{Tint, blend, shade, tint};
+use crate::view::{
+    clay::{Tint, blend, shade, tint},
+    maps,
+};
 
 /// How many segments a map covers.
 pub(super) const TILE: f32 = 2.0;
@@ -34,11 +32,14 @@ pub(super) enum Coat {
 impl Coat {
     /// Its colour map and its bump map.
     pub fn maps(self) -> [Image; 2] {
-        let color = image(TextureFormat::Rgba8UnormSrgb, |u, v| {
+        let place = |x: usize, y: usize| (x as f32 / SIZE[0] as f32, y as f32 / SIZE[1] as f32 * TILE);
+        let color = maps::image(SIZE, TextureFormat::Rgba8UnormSrgb, |x, y| {
+            let (u, v) = place(x, y);
             let [r, g, b, _] = self.color(u, v);
             Srgba::from(LinearRgba::rgb(r, g, b)).to_f32_array()
         });
-        let bumps = image(TextureFormat::Rgba8Unorm, |u, v| {
+        let bumps = maps::image(SIZE, TextureFormat::Rgba8Unorm, |x, y| {
+            let (u, v) = place(x, y);
             let step = 0.5 / SIZE[0] as f32;
             let slope = |du: f32, dv: f32| self.height(u + du, v + dv) - self.height(u - du, v - dv);
             let normal = Vec3::new(-slope(step, 0.0) / (2.0 * step * AROUND), -slope(0.0, step) / (2.0 * step), 1.0);
@@ -128,42 +129,6 @@ fn saddles(u: f32, v: f32, down: f32, colors: [u32; 4]) -> Tint {
 fn smooth(from: f32, to: f32, x: f32) -> f32 {
     let t = ((x - from) / (to - from)).clamp(0.0, 1.0);
     t * t * (3.0 - 2.0 * t)
-}
-
-/// A map with all its smaller copies, so that it does not shimmer from afar.
-fn image(format: TextureFormat, pixel: impl Fn(f32, f32) -> [f32; 4]) -> Image {
-    let [width, height] = SIZE;
-    let at = |i: usize| pixel((i % width) as f32 / width as f32, (i / width) as f32 / height as f32 * TILE);
-    let mut level: Vec<[f32; 4]> = (0..width * height).map(at).collect();
-    let bytes = |level: &[[f32; 4]]| -> Vec<u8> {
-        level.iter().flatten().map(|part| (part.clamp(0.0, 1.0) * 255.0).round() as u8).collect()
-    };
-    let mut data = bytes(&level);
-    let size = Extent3d { width: width as u32, height: height as u32, depth_or_array_layers: 1 };
-    let usage = RenderAssetUsages::RENDER_WORLD;
-    let mut image = Image::new(size, TextureDimension::D2, data.clone(), format, usage);
-    let (mut wide, mut levels) = (width, 1);
-    while wide > 2 && level.len() / wide > 1 {
-        let half = wide / 2;
-        level = (0..level.len() / 4)
-            .map(|i| {
-                let corner = i / half * 2 * wide + i % half * 2;
-                let four = [corner, corner + 1, corner + wide, corner + wide + 1].map(|i| level[i]);
-                core::array::from_fn(|part| four.iter().map(|pixel| pixel[part]).sum::<f32>() * 0.25)
-            })
-            .collect();
-        data.extend(bytes(&level));
-        (wide, levels) = (half, levels + 1);
-    }
-    image.texture_descriptor.mip_level_count = levels;
-    image.data = Some(data);
-    image.sampler = ImageSampler::Descriptor(ImageSamplerDescriptor {
-        address_mode_u: ImageAddressMode::Repeat,
-        address_mode_v: ImageAddressMode::Repeat,
-        mipmap_filter: ImageFilterMode::Linear,
-        ..ImageSamplerDescriptor::linear()
-    });
-    image
 }
 
 #[cfg(test)]
