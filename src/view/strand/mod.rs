@@ -2,6 +2,7 @@
 
 mod bristles;
 mod coat;
+mod face;
 mod shape;
 mod spline;
 mod surface;
@@ -48,6 +49,10 @@ struct Shared {
     bristle_paint: Handle<Paint>,
     blot: Handle<Mesh>,
     shadow: Handle<Paint>,
+    snout: Handle<Mesh>,
+    tongue: Handle<Mesh>,
+    smile: Handle<Mesh>,
+    feeler: Handle<Mesh>,
 }
 
 /// The skin that a strand wears.
@@ -65,6 +70,10 @@ pub(super) struct StrandSkin {
 pub(super) enum StrandPart {
     /// An eye at a vertex of the skin, of some size.
     Eye { vertex: usize, size: f32 },
+    /// A part of its face, where it is on the ball of its head.
+    Face(Transform),
+    /// The tongue of a snake.
+    Tongue,
     /// The dark spot on the ground under a section.
     Blot { section: usize },
 }
@@ -110,6 +119,10 @@ pub(super) fn dress(
         bristle_paint: paints.add(Paint::matte(shadows)),
         blot: meshes.add(worm_parts::blot()),
         shadow: paints.add(Paint::blot(if shadows { 0.35 } else { 0.9 })),
+        snout: meshes.add(face::snout()),
+        tongue: meshes.add(face::tongue()),
+        smile: meshes.add(worm_parts::mouth()),
+        feeler: meshes.add(worm_parts::feeler()),
     });
     let shared = shared.clone();
 
@@ -125,7 +138,7 @@ pub(super) fn dress(
     // The mesh moves away from where its bounds were taken.
     commands.spawn((Mesh3d(mesh), MeshMaterial3d(coated), NoFrustumCulling, ChildOf(root)));
     if let Some(mesh) = bristle_mesh {
-        commands.spawn((Mesh3d(mesh), MeshMaterial3d(shared.bristle_paint), NoFrustumCulling, ChildOf(root)));
+        commands.spawn((Mesh3d(mesh), MeshMaterial3d(shared.bristle_paint.clone()), NoFrustumCulling, ChildOf(root)));
     }
     // On the sides of the last but one section's middle.
     let row = grain.cap + grain.rows * segments - grain.rows / 2;
@@ -134,11 +147,37 @@ pub(super) fn dress(
         let eye = (Mesh3d(shared.eye.clone()), MeshMaterial3d(shared.eye_paint.clone()));
         commands.spawn((StrandPart::Eye { vertex, size: eye_size }, SkinOf(body), eye, ChildOf(root)));
     }
+    for (part, mesh) in features(coat, &shared) {
+        let looks = (Mesh3d(mesh), MeshMaterial3d(shared.eye_paint.clone()));
+        commands.spawn((part, SkinOf(body), looks, ChildOf(root)));
+    }
     for section in 0..strand.sections() {
         let blot = (Mesh3d(shared.blot.clone()), MeshMaterial3d(shared.shadow.clone()), NotShadowCaster);
         commands.spawn((StrandPart::Blot { section }, SkinOf(body), blot, ChildOf(root)));
     }
     root
+}
+
+/// What is in the face of an animal beside its eyes.
+fn features(coat: Coat, shared: &Shared) -> Vec<(StrandPart, Handle<Mesh>)> {
+    match coat {
+        // An earthworm has no face to speak of.
+        Coat::Worm => Vec::new(),
+        Coat::Snake | Coat::Sidewinder => vec![
+            (StrandPart::Face(Transform::IDENTITY), shared.snout.clone()),
+            (StrandPart::Tongue, shared.tongue.clone()),
+        ],
+        Coat::Caterpillar => {
+            let feeler = |side: f32| {
+                let turn = Quat::from_rotation_x(0.4 * side) * Quat::from_rotation_z(-0.2);
+                let place = Transform::from_xyz(0.2, 0.92, 0.3 * side).with_rotation(turn);
+                (StrandPart::Face(place.with_scale(Vec3::splat(1.25))), shared.feeler.clone())
+            };
+            // It smiles a little higher than the worm in the garden: it is seen from above.
+            let smile = Transform::from_rotation(Quat::from_rotation_z(0.3));
+            vec![(StrandPart::Face(smile), shared.smile.clone()), feeler(1.0), feeler(-1.0)]
+        }
+    }
 }
 
 /// A mesh with room for every vertex, which later is written in place.
@@ -188,8 +227,9 @@ fn write(mesh: &mut Mesh, positions: &Vec<[f32; 3]>, normals: &Vec<[f32; 3]>) {
     }
 }
 
-/// Puts eyes and spots of shade where they belong.
+/// Puts eyes, faces and spots of shade where they belong.
 pub(super) fn follow_parts(
+    time: Res<Time<Real>>,
     bodies: Query<(&Shown, Option<&Ground>)>,
     skins: Query<&StrandSkin>,
     mut parts: Query<(&StrandPart, &SkinOf, &ChildOf, &mut Transform)>,
@@ -198,6 +238,12 @@ pub(super) fn follow_parts(
         let (Ok((shown, ground)), Ok(skin)) = (bodies.get(of.0), skins.get(root.parent())) else { continue };
         let placed = match *part {
             StrandPart::Eye { vertex, size } => eye(&skin.surface, vertex, size),
+            StrandPart::Face(place) => face::head(&skin.surface, skin.grain).map(|head| head * place),
+            StrandPart::Tongue => face::head(&skin.surface, skin.grain).map(|head| {
+                let out = face::flicker(time.elapsed_secs());
+                // Drawn in it is short and inside of the mouth.
+                head * Transform::from_xyz(0.75 * (1.0 - out), 0.0, 0.0).with_scale(Vec3::new(out.max(0.05), 1.0, 1.0))
+            }),
             StrandPart::Blot { section } => blot(shown.positions(), section, ground),
         };
         if let Some(placed) = placed {

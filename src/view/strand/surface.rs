@@ -15,6 +15,9 @@ use super::{
 /// A ring of four control points is drawn in by the spline to 0.916 of half its side; so much larger, it reaches what its masses stand on.
 const RING: f32 = 1.09;
 
+/// How much of its pattern goes over the round end of a head.
+const FACE: f32 = 0.25;
+
 /// How finely a skin is cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Grain {
@@ -69,9 +72,14 @@ pub(super) fn triangles(segments: usize, grain: Grain) -> Vec<u32> {
     corners.flat_map(|a| [a, a + width + 1, a + 1, a, a + width, a + width + 1]).collect()
 }
 
-/// Where on its pattern each vertex is: around the body from the middle of the belly, 0 to 1, and along it in segments from the tail.
+/// Where on its pattern each vertex is: around the body from the middle of the belly, 0 to 1, and along it in segments from the tail. Over the round end of the head
+/// the pattern is drawn out: its next band or saddle would sit in the middle of the face.
 pub(super) fn pattern_places(segments: usize, grain: Grain) -> Vec<[f32; 2]> {
-    let along = |row: usize| (row as f32 - grain.cap as f32) / grain.rows as f32;
+    let along = |row: usize| {
+        let segment = (row as f32 - grain.cap as f32) / grain.rows as f32;
+        let on_head = (segment - segments as f32).max(0.0);
+        segment - on_head + FACE * on_head
+    };
     let place = |row, column| [column as f32 / grain.columns as f32, along(row)];
     (0..grain.all_rows(segments)).flat_map(|row| (0..=grain.columns).map(move |column| place(row, column))).collect()
 }
