@@ -1,6 +1,6 @@
 //! Bodies and apps that the tests share.
 
-use bevy::{math::DVec3, prelude::*, time::TimeUpdateStrategy};
+use bevy::{ecs::schedule::SingleThreadedExecutor, math::DVec3, prelude::*, time::TimeUpdateStrategy};
 use wriggle::{
     body::{Muscle, Muscles, Particle, ParticleId, Particles, SpineFriction, Spring, SpringId, Springs, Wave},
     mechanics::{Advance, BodyParts, Model, State, Timeline, integrators::Method},
@@ -145,6 +145,10 @@ pub fn stepping_app(dt: f64, steps: u64) -> App {
     let mut clock = Clock::new(dt, 1.0).unwrap();
     clock.set_steps_per_tick(steps);
     app.insert_resource(clock);
+    // Handing the few systems of a tick from thread to thread takes longer than most ticks here.
+    for (_, schedule) in app.world_mut().resource_mut::<Schedules>().iter_mut() {
+        schedule.set_executor(SingleThreadedExecutor::new());
+    }
     app
 }
 
