@@ -42,8 +42,8 @@ pub struct Known {
     selected: usize,
     /// The animal that is led.
     led: Option<Entity>,
-    /// The body that is pulled at.
-    pulled: Option<Entity>,
+    /// The bodies that are pulled at.
+    pulled: Vec<Entity>,
     frozen: HashMap<Entity, String>,
     /// What was said of a bad file since a scene was opened.
     bad_file: Option<String>,
@@ -90,8 +90,8 @@ pub fn read(world: &mut World) {
                 open(world, &mut settings, &mut known);
             }
             let led = world.get_resource::<Selected>().and_then(|selected| selected.0);
-            let pulled = world.query_filtered::<Entity, With<Pull>>().iter(world).next();
-            let taken = pulled.filter(|_| pulled != known.pulled);
+            let pulled: Vec<_> = world.query_filtered::<Entity, With<Pull>>().iter(world).collect();
+            let taken = pulled.iter().find(|body| !known.pulled.contains(body)).copied();
             known.pulled = pulled;
             if opened || led != known.led || taken.is_some() || is_stale(world, &settings, &known) {
                 read_bodies(world, &mut settings, &known);

@@ -27,8 +27,8 @@ const THICKNESS: f32 = 0.05;
 /// How dark its shade on the ground is, and how far above the ground it is drawn.
 const SHADE: f32 = 0.42;
 const LIFT: f32 = 0.012;
-/// So far below its place the shade's mesh has its origin: what shines through is drawn from far to near by its origin, and the shade lies behind the skin.
-const SUNK: f32 = 50.0;
+/// Steps along a ray of the sun until it meets the ground; a plane takes one.
+const RAY_STEPS: usize = 12;
 
 /// The skin that a block wears.
 #[derive(Component)]
@@ -75,7 +75,7 @@ pub(super) fn dress(body: Entity, lattice: Lattice, cloth: &mut Cloth<'_>, comma
     let skin_child = (Mesh3d(skin.clone()), MeshMaterial3d(paint), NoFrustumCulling);
     let shade_child = shade.clone().map(|shade| {
         let paint = cloth.paints.add(Paint::blot(SHADE));
-        (Mesh3d(shade), MeshMaterial3d(paint), Transform::from_xyz(0.0, -SUNK, 0.0), NoFrustumCulling)
+        (Mesh3d(shade), MeshMaterial3d(paint), NoFrustumCulling)
     });
     let worn = JellySkin { mesh: skin, shade, outer, triangles, positions: Vec::new(), normals: Vec::new() };
     let root = commands.spawn((SceneMember, SkinOf(body), worn, Transform::default(), Visibility::default())).id();
@@ -101,7 +101,7 @@ pub(super) fn follow(
             && let Some(VertexAttributeValues::Float32x3(values)) = shade.attribute_mut(Mesh::ATTRIBUTE_POSITION)
         {
             values.clear();
-            values.extend(positions.iter().map(|at| (shaded(Vec3::from(*at), ground) + SUNK * Vec3::Y).to_array()));
+            values.extend(positions.iter().map(|at| shaded(Vec3::from(*at), ground).to_array()));
         }
         let Some(mut mesh) = meshes.get_mut(&*mesh) else { continue };
         normals.clear();
@@ -128,15 +128,20 @@ pub(super) fn follow(
 }
 
 /// Where what is at `at` throws its shade; of a block without a ground there is none. Of the faces that are laid down on the ground so, those that face the sun
-/// face up, and no other is drawn: one layer of shade.
+/// face up, and no other is drawn: one layer of shade, unless the block is folded.
 fn shaded(at: Vec3, ground: Option<&Ground>) -> Vec3 {
     let Some(ground) = ground else { return Vec3::ZERO };
-    let (distance, normal) = ground_distance(ground, at.as_dvec3());
-    let normal = normal.as_vec3();
-    // Along the sun's rays as far as the plane under it; a slope that lies in the dark by itself gets it straight below.
-    let away = distance as f32 - LIFT;
-    let facing = normal.dot(SUN);
-    if facing > 0.1 { at - SUN * (away / facing) } else { at - normal * away }
+    let (mut at, sun) = (at, SUN.normalize());
+    for _ in 0..RAY_STEPS {
+        let (distance, normal) = ground_distance(ground, at.as_dvec3());
+        let (away, facing) = (distance as f32 - LIFT, normal.as_vec3().dot(sun));
+        if away.abs() < 1e-4 {
+            break;
+        }
+        // As far as the plane under it; past what is turned away from the sun no further than is free.
+        at -= sun * if facing > 0.1 { away / facing } else { away };
+    }
+    at
 }
 
 /// Whether a grid has a surface: a row of masses has none.
@@ -179,7 +184,10 @@ fn surface(size: [usize; 3]) -> (Vec<usize>, Vec<[u32; 3]>) {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
     use super::*;
+    use crate::body::{Surface, Terrain};
 
     #[test]
     fn the_surface_of_a_grid_is_closed_and_looks_outwards() {
@@ -211,6 +219,13 @@ mod tests {
             assert!((at - shade).cross(SUN).length() < 1e-5, "{shade} is not behind {at}");
         }
         assert_eq!(shaded(Vec3::Y, None), Vec3::ZERO);
+        // Over a hill, too.
+        let hill = Surface::Hill { center: (0.0, 0.0), radius: 8.0, height: 2.0 };
+        let ground = Ground::Terrain(Arc::new(Terrain::new([hill]).unwrap()));
+        let at = Vec3::new(-1.0, 5.0, 1.0);
+        let shade = shaded(at, Some(&ground));
+        assert!((ground_distance(&ground, shade.as_dvec3()).0 as f32 - LIFT).abs() < 1e-3, "{shade}");
+        assert!((at - shade).cross(SUN).length() < 1e-4, "{shade} is not behind {at}");
     }
 
     #[test]

@@ -10,13 +10,21 @@ use bevy::{
 /// From how many sides of a slanted surface a map is looked up.
 const ANISOTROPY: u16 = 8;
 
-/// A map of so many pixels across and down, with all its smaller copies, so that it does not shimmer from afar. `pixel` gives its four numbers, 0 to 1, as `format`
-/// has them.
+/// A map of so many pixels across and down, with all its smaller copies, so that it does not shimmer from afar. `pixel` gives its four numbers, 0 to 1: linear light
+/// also where `format` keeps it as sRGB.
 pub(super) fn image(size: [usize; 2], format: TextureFormat, pixel: impl Fn(usize, usize) -> [f32; 4]) -> Image {
     let [width, height] = size;
     let mut level: Vec<[f32; 4]> = (0..width * height).map(|i| pixel(i % width, i / width)).collect();
+    let encoded = |[r, g, b, a]: [f32; 4]| match format.is_srgb() {
+        true => Srgba::from(LinearRgba::new(r, g, b, a)).to_f32_array(),
+        false => [r, g, b, a],
+    };
     let bytes = |level: &[[f32; 4]]| -> Vec<u8> {
-        level.iter().flatten().map(|part| (part.clamp(0.0, 1.0) * 255.0).round() as u8).collect()
+        level
+            .iter()
+            .flat_map(|&pixel| encoded(pixel))
+            .map(|part| (part.clamp(0.0, 1.0) * 255.0).round() as u8)
+            .collect()
     };
     let mut data = bytes(&level);
     let size = Extent3d { width: width as u32, height: height as u32, depth_or_array_layers: 1 };

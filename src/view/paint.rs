@@ -121,6 +121,11 @@ impl Material for Paint {
         if self.sheer { AlphaMode::Blend } else { AlphaMode::Opaque }
     }
 
+    /// Added to the depth by which Bevy sorts what shines through, from far to near: a spot of shade lies on the ground behind whatever throws it.
+    fn depth_bias(&self) -> f32 {
+        if self.sheer && self.finish.z > 0.5 { -50.0 } else { 0.0 }
+    }
+
     fn specialize(
         _pipeline: &MaterialPipeline,
         descriptor: &mut RenderPipelineDescriptor,

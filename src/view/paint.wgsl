@@ -1,5 +1,5 @@
 // The one material of the garden: vertex colours under a warm sun and a blue sky. The fourth number of a vertex colour is how far the
-// wind moves the vertex. Cheap enough for a renderer without a GPU; the tone curve is applied here so that both qualities look alike.
+// wind moves the vertex or, below 0, how much of the paint's maps it does without. Cheap enough for a renderer without a GPU; the tone curve is applied here so that both qualities look alike.
 // What a paint does differently is a definition and not a test of a uniform: Mesa's software renderer compiles a shader again for each
 // value of a uniform that decides a branch, at every draw.
 
@@ -84,7 +84,6 @@ fn tone(x: vec3<f32>) -> vec3<f32> {
 fn fragment(in: VertexOutput, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
     var albedo = in.color.rgb * paint.tint.rgb;
 #ifdef MAPPED
-    // Below 0, the fourth number of the colour is how much of the maps is left out.
     let mapped = clamp(1.0 + in.color.a, 0.0, 1.0);
     albedo *= mix(vec3(1.0), textureSample(color_map, map_sampler, in.uv).rgb, mapped);
     let bump = mix(vec3(0.0, 0.0, 1.0), textureSample(bump_map, map_sampler, in.uv).xyz * 2.0 - 1.0, mapped);
@@ -97,8 +96,9 @@ fn fragment(in: VertexOutput, @builtin(front_facing) front: bool) -> @location(0
         let eye = to_eye / distance;
         var normal = normalize(in.world_normal);
 #ifdef MAPPED
-        let across = in.world_tangent.w * cross(normal, in.world_tangent.xyz);
-        normal = normalize(bump.x * in.world_tangent.xyz + bump.y * across + bump.z * normal);
+        let along = normalize(in.world_tangent.xyz - normal * dot(normal, in.world_tangent.xyz));
+        let across = in.world_tangent.w * cross(normal, along);
+        normal = normalize(bump.x * along + bump.y * across + bump.z * normal);
 #endif
 #ifndef BOTH_SIDES
         // Leaves and blades are seen from both sides; their normals point up and stay.

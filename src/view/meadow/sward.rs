@@ -9,8 +9,8 @@ use crate::view::maps;
 
 /// How many lengths a map covers; it goes into a tile of the plain without a rest.
 pub(super) const COVERS: f32 = 6.0;
-/// The mean of the colour map: what is painted with it is so much darker.
-pub(super) const MEAN: f32 = 0.5;
+/// The mean of each channel of the colour map, in linear light: what is painted with it is so much darker.
+pub(super) const MEAN: f32 = 0.4;
 
 /// Pixels each way.
 const SIZE: usize = 512;
@@ -18,6 +18,8 @@ const SIZE: usize = 512;
 const LEAVES: usize = 5200;
 const LENGTH: [f32; 2] = [18.0, 46.0];
 const WIDTH: f32 = 2.6;
+/// Its bumps are drawn with this part of the difference of its heights to either side: from afar they are none, and should not be lighter there.
+const FLATNESS: f32 = 0.3;
 /// How dark it is between the leaves.
 const DEPTH: f32 = 0.16;
 
@@ -32,17 +34,20 @@ struct Spot {
 /// Colours, by which the ground's own are multiplied, and bumps.
 pub(super) fn maps() -> [Image; 2] {
     let spots = grown();
-    let mean = spots.iter().map(|spot| spot.light).sum::<f32>() / spots.len() as f32;
+    let lit = |spot: &Spot| {
+        [1.0 + 0.45 * spot.dry, 1.0 + 0.12 * spot.dry, 1.0 - 0.25 * spot.dry].map(|part| spot.light * part)
+    };
+    // Each channel has the mean, so that the ground keeps the hue of its own colour.
+    let sums = spots.iter().map(lit).fold([0.0; 3], |sums, light| core::array::from_fn(|i| sums[i] + light[i]));
     let color = maps::image([SIZE; 2], TextureFormat::Rgba8UnormSrgb, |x, y| {
-        let Spot { light, dry, .. } = spots[y * SIZE + x];
-        let light = light * MEAN / mean;
-        let [r, g, b] = [1.0 + 0.45 * dry, 1.0 + 0.12 * dry, 1.0 - 0.25 * dry].map(|part| (light * part).min(1.0));
-        Srgba::from(LinearRgba::rgb(r, g, b)).to_f32_array()
+        let light = lit(&spots[y * SIZE + x]);
+        let [r, g, b] = core::array::from_fn(|i| light[i] * MEAN * spots.len() as f32 / sums[i]);
+        [r, g, b, 1.0]
     });
     let height = |x: usize, y: usize| spots[y % SIZE * SIZE + x % SIZE].height;
     let bumps = maps::image([SIZE; 2], TextureFormat::Rgba8Unorm, |x, y| {
         let slope = [height(x + 1, y) - height(x + SIZE - 1, y), height(x, y + 1) - height(x, y + SIZE - 1)];
-        let normal = Vec3::new(-0.5 * slope[0], -0.5 * slope[1], 1.0).normalize();
+        let normal = Vec3::new(-FLATNESS * slope[0], -FLATNESS * slope[1], 1.0).normalize();
         (normal * 0.5 + 0.5).extend(1.0).to_array()
     });
     [color, bumps]
@@ -71,7 +76,7 @@ fn grown() -> Vec<Spot> {
                 if part.abs() > 1.0 {
                     continue;
                 }
-                let place = (at + across * side as f32).as_ivec2();
+                let place = (at + across * side as f32).floor().as_ivec2();
                 let [x, y] = [place.x, place.y].map(|part| part.rem_euclid(SIZE as i32) as usize);
                 spots[y * SIZE + x] = Spot {
                     // Lighter towards the tip, and a keel along the middle.
@@ -85,4 +90,39 @@ fn grown() -> Vec<Spot> {
         }
     }
     spots
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn grass_is_as_bright_from_near_as_from_afar() {
+        let [color, _] = maps();
+        let data = color.data.unwrap();
+        let (mut side, mut from) = (SIZE, 0);
+        for _ in 0..color.texture_descriptor.mip_level_count {
+            let level = &data[from..from + 4 * side * side];
+            for channel in 0..3 {
+                let light = |pixel: &[u8]| LinearRgba::from(Srgba::rgb_u8(pixel[channel], 0, 0)).red;
+                let mean = level.chunks(4).map(light).sum::<f32>() / (side * side) as f32;
+                assert!((mean / MEAN - 1.0).abs() < 0.02, "{mean} in channel {channel} at {side} pixels");
+            }
+            (from, side) = (from + 4 * side * side, side / 2);
+        }
+        assert_eq!(from, data.len());
+    }
+
+    #[test]
+    fn leaves_go_on_over_the_edge_of_their_map() {
+        // Neighbours across an edge differ no more than neighbours elsewhere.
+        let spots = grown();
+        let differ = |a: usize, b: usize| {
+            let pairs = (0..SIZE).map(|y| spots[y * SIZE + a].light - spots[y * SIZE + b].light);
+            pairs.map(f32::abs).sum::<f32>() / SIZE as f32
+        };
+        let inside = (0..16).map(|i| differ(17 + 29 * i, 18 + 29 * i)).sum::<f32>() / 16.0;
+        let across = differ(SIZE - 1, 0);
+        assert!(across < 1.3 * inside, "{across} at the edge, {inside} elsewhere");
+    }
 }

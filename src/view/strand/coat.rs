@@ -36,7 +36,7 @@ impl Coat {
         let color = maps::image(SIZE, TextureFormat::Rgba8UnormSrgb, |x, y| {
             let (u, v) = place(x, y);
             let [r, g, b, _] = self.color(u, v);
-            Srgba::from(LinearRgba::rgb(r, g, b)).to_f32_array()
+            [r, g, b, 1.0]
         });
         let bumps = maps::image(SIZE, TextureFormat::Rgba8Unorm, |x, y| {
             let (u, v) = place(x, y);

@@ -89,6 +89,10 @@ mod tests {
             assert!((head * Vec3::X).distance(tip) < 1e-4, "{head:?}, {tip}");
             assert!((head.rotation * Vec3::X).distance(turn * Vec3::Z) < 1e-3);
             assert!((head.rotation * Vec3::Y).distance(turn * Vec3::Y) < 1e-3);
+            // Its crown is the highest point of its last section's rim.
+            let rim = surface.positions.len() - (1 + grain.cap) * (grain.columns + 1);
+            let crown = Vec3::from(surface.positions[rim + grain.columns / 2]);
+            assert!((head * Vec3::Y).distance(crown) < 0.02, "{head:?}, {crown}");
             // Its head is wider than it is high.
             assert!(head.scale.z > head.scale.y && head.scale.y > 0.1, "{}", head.scale);
         }

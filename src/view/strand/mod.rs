@@ -229,7 +229,7 @@ fn write(mesh: &mut Mesh, positions: &Vec<[f32; 3]>, normals: &Vec<[f32; 3]>) {
 
 /// Puts eyes, faces and spots of shade where they belong.
 pub(super) fn follow_parts(
-    time: Res<Time<Real>>,
+    time: Res<Time<Virtual>>,
     bodies: Query<(&Shown, Option<&Ground>)>,
     skins: Query<&StrandSkin>,
     mut parts: Query<(&StrandPart, &SkinOf, &ChildOf, &mut Transform)>,
