@@ -217,7 +217,6 @@ fn shipped_scenes_are_stepped_no_finer_and_no_coarser_than_they_need() {
 }
 
 #[test]
-#[ignore = "takes half a minute; cargo test --release --no-default-features --test it -- --ignored no_coarser"]
 fn shipped_blocks_are_stepped_no_finer_and_no_coarser_than_they_need() {
     let blocks: Vec<_> = chosen(Made::OfBlocks).collect();
     assert_eq!(blocks, ["jelly", "jelly-lab", "jelly-template"]);
