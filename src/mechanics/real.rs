@@ -107,6 +107,16 @@ impl Real for f64 {
 #[repr(align(64))]
 pub struct Lanes<const W: usize>([f64; W]);
 
+impl<const W: usize> Lanes<W> {
+    /// The first of them, or all of them and zeros behind.
+    #[inline(always)]
+    pub(super) fn resized<const N: usize>(self) -> Lanes<N> {
+        let (mut out, kept) = ([0.0; N], W.min(N));
+        out[..kept].copy_from_slice(&self.0[..kept]);
+        Lanes(out)
+    }
+}
+
 impl<const W: usize> From<[f64; W]> for Lanes<W> {
     #[inline(always)]
     fn from(values: [f64; W]) -> Self {

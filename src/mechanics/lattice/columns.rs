@@ -1,6 +1,6 @@
 //! Numbers laid out for the inner loop.
 
-use core::{array, ops::Range};
+use core::array;
 
 use bytemuck::{Pod, Zeroable};
 
@@ -8,6 +8,9 @@ use crate::mechanics::Lanes;
 
 /// How many numbers are computed side by side.
 pub(super) const LANES: usize = 8;
+
+/// How many where no more than so many are left.
+pub(super) const HALF: usize = 4;
 
 pub(super) type Eight = Lanes<LANES>;
 
@@ -73,36 +76,34 @@ impl<const N: usize> Columns<N> {
 
 /// The numbers from a place on.
 #[inline(always)]
-pub(super) fn eight(flat: &[f64], at: usize) -> Eight {
-    let mut vector = [0.0; LANES];
-    vector.copy_from_slice(&flat[at..at + LANES]);
+pub(super) fn some<const W: usize>(flat: &[f64], at: usize) -> Lanes<W> {
+    let mut vector = [0.0; W];
+    vector.copy_from_slice(&flat[at..at + W]);
     vector.into()
 }
 
 /// The numbers from a row on in the first three of columns of this length.
 // Spelled out, as in the loop that uses it: closures among vectors are not always inlined.
 #[inline(always)]
-pub(super) fn three(flat: &[f64], length: usize, row: usize) -> [Eight; 3] {
-    let block = &flat[row..row + 2 * length + LANES];
-    [eight(block, 0), eight(block, length), eight(block, 2 * length)]
+pub(super) fn three<const W: usize>(flat: &[f64], length: usize, row: usize) -> [Lanes<W>; 3] {
+    let block = &flat[row..row + 2 * length + W];
+    [some(block, 0), some(block, length), some(block, 2 * length)]
 }
 
 /// Replaces the numbers from a row on in the first three of columns of this length.
 #[inline(always)]
-pub(super) fn put(flat: &mut [f64], length: usize, row: usize, [x, y, z]: [Eight; 3]) {
-    let block = &mut flat[row..row + 2 * length + LANES];
+pub(super) fn put<const W: usize>(flat: &mut [f64], length: usize, row: usize, [x, y, z]: [Lanes<W>; 3]) {
+    let block = &mut flat[row..row + 2 * length + W];
     for (vector, at) in [(x, 0), (y, length), (z, 2 * length)] {
-        block[at..at + LANES].copy_from_slice(&<[f64; LANES]>::from(vector));
+        block[at..at + W].copy_from_slice(&<[f64; W]>::from(vector));
     }
 }
 
-/// Some rows of a column, a whole number of vectors. Cut to one length, columns need no check of their bounds in a loop.
+/// Sets the numbers from a row on to zero in the first three of columns of this length.
 #[inline(always)]
-pub(super) fn eights<'a>(column: &'a [f64], rows: &Range<usize>) -> &'a [[f64; LANES]] {
-    &column[rows.start..rows.start + rows.len() / LANES * LANES].as_chunks().0[..rows.len() / LANES]
-}
-
-#[inline(always)]
-pub(super) fn eights_mut<'a>(column: &'a mut [f64], rows: &Range<usize>) -> &'a mut [[f64; LANES]] {
-    &mut column[rows.start..rows.start + rows.len() / LANES * LANES].as_chunks_mut().0[..rows.len() / LANES]
+pub(super) fn clear(flat: &mut [f64], length: usize, row: usize) {
+    let block = &mut flat[row..row + 2 * length + LANES];
+    block[..LANES].fill(0.0);
+    block[length..length + LANES].fill(0.0);
+    block[2 * length..].fill(0.0);
 }

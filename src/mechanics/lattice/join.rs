@@ -1,10 +1,11 @@
 //! The springs that begin in a layer, eight side by side: the inner loop of a block.
 
-use crate::mechanics::Real;
+use crate::mechanics::{Lanes, Real};
 
 use super::{
-    columns::{Columns, Eight, LANES, eight, put, three},
-    layer::Layer,
+    columns::{Columns, Eight, HALF, LANES, put, some, three},
+    layer::{Layer, Sums},
+    task::Task,
 };
 
 /// A way to neighbours, and the springs along it.
@@ -49,42 +50,59 @@ pub(super) struct Grid<'a> {
 
 impl Grid<'_> {
     /// Adds the forces of all springs that begin in `layer` back on the masses at which they end, of this layer and of the next one. `forward` becomes the sums on the
-    /// masses at which they begin, `too_long` 1 where a spring is not shorter than its longest.
+    /// masses at which they begin, `too_long` more than 0 where a spring is not shorter than its longest.
     ///
-    /// Of eight masses all springs come one after the other, so that what belongs to the eight stays in registers.
+    /// Of eight masses all springs come one after the other, so that what belongs to the eight stays in registers. The forces on masses of the next layer go to `task` as
+    /// soon as no spring that is still to come ends there: what it does with them costs little in between, while the processor waits for roots and quotients.
     #[inline(always)]
-    pub(super) fn join(
+    pub(super) fn join<T: Task>(
         &self,
         ask: Ask,
         layer: &Layer,
-        next: Option<(&Layer, &mut Columns<3>)>,
-        forward: &mut Columns<3>,
-        within: &mut Columns<3>,
+        mut next: Option<Next<'_>>,
+        sums: &mut Sums,
         too_long: &mut Eight,
+        task: &mut T,
     ) {
-        let (length, masks) = (self.masks.length(), self.masks.flat());
-        let (position, velocity, forward) = (layer.position.flat(), layer.velocity.flat(), forward.flat_mut());
-        let mut own = Ends { position, velocity, back: within.flat_mut() };
-        let mut next = next.map(|(layer, before)| Ends {
-            position: layer.position.flat(),
-            velocity: layer.velocity.flat(),
-            back: before.flat_mut(),
-        });
-        for row in layer.rows().step_by(LANES) {
-            let position = three(position, length, row);
-            let velocity = if ask == Ask::Damped { three(velocity, length, row) } else { position };
-            let mut springs = Springs { ask, row, length, masks, position, velocity, sum: [Eight::splat(0.0); 3] };
-            if let Some(next) = &mut next {
-                for way in self.onward {
-                    springs.pull(way, next, too_long);
+        let (length, masks, rows, reach) = (self.masks.length(), self.masks.flat(), layer.rows(), layer.reach());
+        let (position, velocity) = (layer.position.flat(), layer.velocity.flat());
+        let forward = sums.forward.flat_mut();
+        let mut own = Ends { position, velocity, back: sums.within.flat_mut() };
+        for row in (rows.start..rows.end + reach).step_by(LANES) {
+            if row < rows.end {
+                let position = three(position, length, row);
+                let velocity = if ask == Ask::Damped { three(velocity, length, row) } else { position };
+                let mut springs = Springs { ask, row, length, masks, position, velocity, sum: [Eight::splat(0.0); 3] };
+                if let Some(Next { layer, sums, .. }) = &mut next {
+                    let (position, velocity) = (layer.position.flat(), layer.velocity.flat());
+                    let mut ends = Ends { position, velocity, back: sums.before.flat_mut() };
+                    for way in self.onward {
+                        springs.pull(way, &mut ends, too_long);
+                    }
                 }
+                for way in self.within {
+                    springs.pull(way, &mut own, too_long);
+                }
+                put(forward, length, row, springs.sum);
             }
-            for way in self.within {
-                springs.pull(way, &mut own, too_long);
+            if let Some(Next { z, own: true, layer, sums }) = &mut next
+                && ask != Ask::Lengths
+                && row >= rows.start + reach
+            {
+                let row = row - reach;
+                task.write(*z, row, layer, sums.take(row));
             }
-            put(forward, length, row, springs.sum);
         }
     }
+}
+
+/// The next layer.
+pub(super) struct Next<'a> {
+    pub(super) z: usize,
+    /// Whether the forces on it are complete with the springs that lead to it, and are used.
+    pub(super) own: bool,
+    pub(super) layer: &'a mut Layer,
+    pub(super) sums: &'a mut Sums,
 }
 
 /// The columns of a layer in which springs end, and the sums of what they pull back with.
@@ -114,35 +132,54 @@ impl Springs<'_> {
         if self.row + LANES <= way.from || way.upto <= self.row {
             return;
         }
+        if self.row + HALF < way.upto {
+            self.pull_some::<LANES>(way, ends, too_long);
+        } else {
+            // Roots and quotients of half a vector take half the time.
+            self.pull_some::<HALF>(way, ends, too_long);
+        }
+    }
+
+    /// The first `W` of those along a way.
+    #[inline(always)]
+    fn pull_some<const W: usize>(&mut self, way: &Way, ends: &mut Ends<'_>, too_long: &mut Eight) {
         let (length, to) = (self.length, self.row.wrapping_add_signed(way.offset));
-        let apart = difference(three(ends.position, length, to), self.position);
-        let (square, mask) = (dot(apart, apart), eight(self.masks, way.mask * length + self.row));
-        let (zero, one) = (Eight::splat(0.0), Eight::splat(1.0));
-        *too_long = (square * mask).if_below(Eight::splat(way.longest_square), *too_long, one);
+        let apart = difference(three(ends.position, length, to), first(self.position));
+        let (square, mask) = (dot(apart, apart), some::<W>(self.masks, way.mask * length + self.row));
+        let (zero, one) = (Lanes::splat(0.0), Lanes::splat(1.0));
+        let over = (square * mask).if_below(Lanes::splat(way.longest_square), zero, one);
+        *too_long += over.resized();
         if self.ask == Ask::Lengths {
             return;
         }
         let distance = square.sqrt();
         let inverse = zero.if_below(distance, one / distance, zero);
-        let mut pull = Eight::splat(way.stiffness) - Eight::splat(way.tension) * inverse;
+        let mut pull = Lanes::splat(way.stiffness) - Lanes::splat(way.tension) * inverse;
         if self.ask == Ask::Damped {
-            let speed = dot(difference(three(ends.velocity, length, to), self.velocity), apart);
-            pull += Eight::splat(way.damping) * speed * inverse * inverse;
+            let speed = dot(difference(three(ends.velocity, length, to), first(self.velocity)), apart);
+            pull += Lanes::splat(way.damping) * speed * inverse * inverse;
         }
         let pull = pull * mask;
         let force = [apart[0] * pull, apart[1] * pull, apart[2] * pull];
-        self.sum = [self.sum[0] + force[0], self.sum[1] + force[1], self.sum[2] + force[2]];
+        let [x, y, z] = self.sum;
+        self.sum = [x + force[0].resized(), y + force[1].resized(), z + force[2].resized()];
         let back = three(ends.back, length, to);
         put(ends.back, length, to, difference(back, force));
     }
 }
 
+/// The first of some numbers.
 #[inline(always)]
-fn difference(a: [Eight; 3], b: [Eight; 3]) -> [Eight; 3] {
+fn first<const W: usize>([x, y, z]: [Eight; 3]) -> [Lanes<W>; 3] {
+    [x.resized(), y.resized(), z.resized()]
+}
+
+#[inline(always)]
+fn difference<const W: usize>(a: [Lanes<W>; 3], b: [Lanes<W>; 3]) -> [Lanes<W>; 3] {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
 #[inline(always)]
-fn dot(a: [Eight; 3], b: [Eight; 3]) -> Eight {
+fn dot<const W: usize>(a: [Lanes<W>; 3], b: [Lanes<W>; 3]) -> Lanes<W> {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }

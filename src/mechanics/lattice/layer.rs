@@ -5,14 +5,14 @@ use core::{iter::zip, ops::Range};
 use crate::mechanics::Real;
 
 use super::{
-    columns::{Columns, Eight, LANES, eights, eights_mut},
+    columns::{Columns, Eight, LANES, clear, put, some, three},
     tasks::KickDrift,
 };
 
 /// A layer of the grid, coordinate by coordinate, with room for neighbours that are not there on either side.
 #[derive(Clone, Debug)]
 pub(super) struct Layer {
-    /// Where the first mass is in the columns.
+    /// Where the first mass is in the columns: there is room for any neighbour before it.
     pad: usize,
     /// How many masses there are.
     count: usize,
@@ -37,10 +37,16 @@ impl Sums {
         Self { forward: Columns::zeros(room), within: Columns::zeros(room), before: Columns::zeros(room) }
     }
 
-    /// Sets the sums of what springs pull back with to zero.
-    fn clear(&mut self) {
-        self.within.clear();
-        self.before.clear();
+    /// Sums up what acts on the eight masses that begin with a row. What springs pull back with is zero afterwards.
+    #[inline(always)]
+    pub(super) fn take(&mut self, row: usize) -> [Eight; 3] {
+        let length = self.forward.length();
+        let [x, y, z]: [Eight; 3] = three(self.forward.flat(), length, row);
+        let [wx, wy, wz] = three(self.within.flat(), length, row);
+        let [bx, by, bz] = three(self.before.flat(), length, row);
+        clear(self.within.flat_mut(), length, row);
+        clear(self.before.flat_mut(), length, row);
+        [x + (wx + bx), y + (wy + by), z + (wz + bz)]
     }
 }
 
@@ -54,6 +60,12 @@ impl Layer {
     #[inline(always)]
     pub(super) fn rows(&self) -> Range<usize> {
         self.pad..self.pad + self.count.next_multiple_of(LANES)
+    }
+
+    /// By how many rows the neighbours of a mass are further at most, rounded up to vectors.
+    #[inline(always)]
+    pub(super) fn reach(&self) -> usize {
+        self.pad
     }
 
     /// Puts the masses of a layer here.
@@ -93,75 +105,68 @@ impl Layer {
         drift(&mut self.position, &self.velocity, reach);
     }
 
-    /// Kicks its masses, which stand where they are to feel the forces, and lets them drift on. What comes to be below a floor is put back on it and loses what of
-    /// its velocity leads down. That is the end of a step; `ahead` is for how long they drift on from there, into the next. What springs pull back with is zero
-    /// afterwards.
+    /// Kicks eight of its masses by the forces on them, which they feel where they are, and lets them drift on. What comes to be below a floor is put back on it and loses
+    /// what of its velocity leads down. That is the end of a step; `ahead` is for how long they drift on from there, into the next.
     #[inline(always)]
-    pub(super) fn kick(&mut self, rule: KickDrift, gravity: f64, floor: bool, ahead: f64, sums: &mut Sums) {
-        let rows = self.rows();
-        let [inverse_mass] = self.inverse_mass.each().map(|column| eights(column, &rows));
-        let columns = zip(self.position.each_mut(), self.velocity.each_mut());
-        let sums = zip(sums.forward.each(), zip(sums.within.each_mut(), sums.before.each_mut()));
-        for (axis, ((x, v), (f, (w, b)))) in zip(columns, sums).enumerate() {
-            let f = eights(f, &rows);
-            let columns = [x, v, w, b].map(|column| eights_mut(column, &rows));
-            // Each on its own: a branch in the loop costs twice its time.
-            let gravity = if axis == 1 { gravity } else { 0.0 };
-            match (floor && axis == 1, ahead > 0.0) {
-                (false, false) => kick::<false, false>(rule, inverse_mass, gravity, ahead, f, columns),
-                (false, true) => kick::<false, true>(rule, inverse_mass, gravity, ahead, f, columns),
-                (true, false) => kick::<true, false>(rule, inverse_mass, gravity, ahead, f, columns),
-                (true, true) => kick::<true, true>(rule, inverse_mass, gravity, ahead, f, columns),
-            }
-        }
+    pub(super) fn kick(
+        &mut self,
+        rule: KickDrift,
+        gravity: f64,
+        floor: bool,
+        ahead: f64,
+        row: usize,
+        forces: [Eight; 3],
+    ) {
+        let length = self.position.length();
+        let inverse_mass = some(self.inverse_mass.flat(), row);
+        let [fx, fy, fz] = forces;
+        let [x, y, z] = three(self.position.flat(), length, row);
+        let [vx, vy, vz] = three(self.velocity.flat(), length, row);
+        let kick = Kick { rule, inverse_mass, ahead };
+        let (x, vx) = kick.moves::<false>(x, vx, fx * inverse_mass);
+        let (z, vz) = kick.moves::<false>(z, vz, fz * inverse_mass);
+        // What is pinned has no weight.
+        let zero = Eight::splat(0.0);
+        let down = fy * inverse_mass - zero.if_below(inverse_mass, Eight::splat(gravity), zero);
+        let (y, vy) = if floor { kick.moves::<true>(y, vy, down) } else { kick.moves::<false>(y, vy, down) };
+        put(self.position.flat_mut(), length, row, [x, y, z]);
+        put(self.velocity.flat_mut(), length, row, [vx, vy, vz]);
     }
 
-    /// Gives the force on each of its masses to `work`. What springs pull back with is zero afterwards.
+    /// Those of eight masses from a row on that there are, by their numbers in the layer.
     #[inline(always)]
-    pub(super) fn each_force(&self, sums: &mut Sums, mut work: impl FnMut(usize, [f64; 3])) {
-        let masses = self.pad..self.pad + self.count;
-        let [f0, f1, f2] = sums.forward.each().map(|column| &column[masses.clone()]);
-        let [w0, w1, w2] = sums.within.each().map(|column| &column[masses.clone()]);
-        let [b0, b1, b2] = sums.before.each().map(|column| &column[masses.clone()]);
-        for i in 0..self.count {
-            work(i, [f0[i] + (w0[i] + b0[i]), f1[i] + (w1[i] + b1[i]), f2[i] + (w2[i] + b2[i])]);
-        }
-        sums.clear();
+    pub(super) fn masses(&self, row: usize) -> Range<usize> {
+        let first = row - self.pad;
+        first..(first + LANES).min(self.count)
     }
 }
 
-/// Kicks along one axis: positions and velocities, by the sums forward, and back within the layer and from the one before.
-#[inline(always)]
-fn kick<const FLOOR: bool, const AHEAD: bool>(
+/// A kick of eight masses, and the drifts after it.
+struct Kick {
     rule: KickDrift,
-    inverse_mass: &[[f64; LANES]],
-    gravity: f64,
+    inverse_mass: Eight,
     ahead: f64,
-    f: &[[f64; LANES]],
-    [x, v, w, b]: [&mut [[f64; LANES]]; 4],
-) {
-    let [dt, after, rate, kept] = [rule.dt, rule.after, rule.rate, rule.kept].map(Eight::splat);
-    let (zero, gravity, ahead, count) =
-        (Eight::splat(0.0), Eight::splat(gravity), Eight::splat(ahead), inverse_mass.len());
-    let (x, v, f, w, b) = (&mut x[..count], &mut v[..count], &f[..count], &mut w[..count], &mut b[..count]);
-    for i in 0..count {
-        let inverse = Eight::from(inverse_mass[i]);
-        let force = Eight::from(f[i]) + (Eight::from(w[i]) + Eight::from(b[i]));
-        // What is pinned has no weight, and no velocity that a damping could take.
-        let a = force * inverse - zero.if_below(inverse, gravity, zero);
-        let speed = Eight::from(v[i]);
-        let mut speed = speed * kept + (a - rate * speed) * dt;
-        let mut place = Eight::from(x[i]) + speed * after;
+}
+
+impl Kick {
+    /// Where they come to be and how they move then, along one axis.
+    #[inline(always)]
+    fn moves<const FLOOR: bool>(&self, place: Eight, speed: Eight, acceleration: Eight) -> (Eight, Eight) {
+        let Self { rule, inverse_mass, ahead } = self;
+        let zero = Eight::splat(0.0);
+        let damping = Eight::splat(rule.rate) * speed;
+        let mut speed = speed * Eight::splat(rule.kept) + (acceleration - damping) * Eight::splat(rule.dt);
+        let mut place = place + speed * Eight::splat(rule.after);
         if FLOOR {
-            let least = zero.if_below(inverse, zero, Eight::splat(f64::NEG_INFINITY));
+            // What is pinned stays where it is.
+            let least = zero.if_below(*inverse_mass, zero, Eight::splat(f64::NEG_INFINITY));
             speed = place.if_below(least, speed.if_below(zero, zero, speed), speed);
             place = place.if_below(least, least, place);
         }
-        if AHEAD {
-            place += speed * ahead;
+        if *ahead > 0.0 {
+            place += speed * Eight::splat(*ahead);
         }
-        (x[i], v[i]) = (place.into(), speed.into());
-        (w[i], b[i]) = (zero.into(), zero.into());
+        (place, speed)
     }
 }
 

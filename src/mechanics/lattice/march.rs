@@ -32,7 +32,7 @@ impl Slab<'_, Move<'_>> {
     fn march(&mut self, steps: u64) -> bool {
         let [before, behind] = self.task.borders;
         let _closing = Closing([before, behind]);
-        self.task.deal(self.layers);
+        pulp::Arch::new().dispatch(Deal(&self.task, self.layers));
         let (reach, damped) = (self.task.motion.rule.before, self.ask == Ask::Damped);
         let mut found = false;
         for step in 0..steps {
@@ -43,8 +43,32 @@ impl Slab<'_, Move<'_>> {
             }
             found |= pulp::Arch::new().dispatch(self.again());
         }
-        self.task.gather(self.layers);
+        pulp::Arch::new().dispatch(Gather(&mut self.task, self.layers));
         found
+    }
+}
+
+/// Deals the masses of a slab out to its layers, in the widest vectors that there are.
+struct Deal<'a, 'b>(&'a Move<'b>, &'a mut [Layer]);
+
+impl pulp::NullaryFnOnce for Deal<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        self.0.deal(self.1);
+    }
+}
+
+/// Gathers them again.
+struct Gather<'a, 'b>(&'a mut Move<'b>, &'a [Layer]);
+
+impl pulp::NullaryFnOnce for Gather<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        self.0.gather(self.1);
     }
 }
 

@@ -13,6 +13,7 @@ mod join;
 mod layer;
 mod march;
 mod sweep;
+mod task;
 mod tasks;
 
 use bevy::tasks::ComputeTaskPool;

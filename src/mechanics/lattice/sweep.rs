@@ -4,30 +4,14 @@ use core::{mem::swap, ops::Range};
 
 use bevy::tasks::ComputeTaskPool;
 
-use crate::mechanics::{Lanes, Real};
+use crate::mechanics::Real;
 
 use super::{
-    columns::{Columns, LANES},
-    join::{Ask, Grid},
+    columns::{Eight, LANES},
+    join::{Ask, Grid, Next},
     layer::{Layer, Sums},
+    task::Task,
 };
-
-/// Where layers come from, and what is done with them.
-pub(super) trait Task: Send {
-    /// Brings a layer to where it feels the springs, once in a sweep: one of the slab, or the one behind it, or before it where that is not [taken over](Self::take_over).
-    fn read(&mut self, z: usize, layer: &mut Layer);
-
-    /// Uses the forces on a layer of the slab, which are complete, and sets the sums of what springs pull back with to zero.
-    fn write(&mut self, z: usize, layer: &mut Layer, sums: &mut Sums);
-
-    /// Gives the slab behind the sums of the springs that lead to its first layer from this one. Where nobody wants them they are lost.
-    fn hand_on(&mut self, _: &Columns<3>) {}
-
-    /// Whether the slab before has given its sums of the springs that lead to the first layer of this one. If not, they are computed once more.
-    fn take_over(&mut self, _: &mut Columns<3>) -> bool {
-        false
-    }
-}
 
 /// Some layers of a block.
 pub(super) struct Slab<'a, T> {
@@ -93,7 +77,7 @@ impl<T: Task> Slab<'_, T> {
         let Self { grid, range, layers, scratch, mut task, .. } = self;
         let Scratch { beside, sums: [here, next] } = scratch;
         let (mut here, mut next) = (here, next);
-        let mut too_long = Lanes::splat(0.0);
+        let mut too_long = Eight::splat(0.0);
         let (start, end) = (range.start, range.end);
         for z in range.rev() {
             let [at, after] = [z - start, z - start + 1].map(|i| i % layers.len());
@@ -102,21 +86,19 @@ impl<T: Task> Slab<'_, T> {
                 _ => (&mut layers[at], None),
             };
             task.read(z, layer);
-            let Sums { forward, within, .. } = here;
-            if z + 1 == grid.layers {
-                grid.join(ask, layer, None, forward, within, &mut too_long);
-            } else if let Some(to) = behind {
-                grid.join(ask, layer, Some((to, &mut next.before)), forward, within, &mut too_long);
-                if ask != Ask::Lengths {
-                    task.write(z + 1, to, next);
-                }
-            } else {
-                task.read(z + 1, beside);
-                grid.join(ask, layer, Some((beside, &mut next.before)), forward, within, &mut too_long);
-                if ask != Ask::Lengths {
-                    task.hand_on(&next.before);
-                    next.before.clear();
-                }
+            let (to, own) = match behind {
+                Some(behind) => (behind, true),
+                None => (&mut *beside, false),
+            };
+            let inner = z + 1 < grid.layers;
+            if inner && !own {
+                task.read(z + 1, to);
+            }
+            let behind = inner.then_some(Next { z: z + 1, own, layer: to, sums: next });
+            grid.join(ask, layer, behind, here, &mut too_long, &mut task);
+            if inner && !own && ask != Ask::Lengths {
+                task.hand_on(&next.before);
+                next.before.clear();
             }
             swap(&mut here, &mut next);
         }
@@ -125,16 +107,12 @@ impl<T: Task> Slab<'_, T> {
             if start > 0 && !task.take_over(&mut next.before) {
                 task.read(start - 1, beside);
                 let onward = Grid { within: &[], ..grid };
-                onward.join(
-                    ask,
-                    beside,
-                    Some((first, &mut next.before)),
-                    &mut here.forward,
-                    &mut here.within,
-                    &mut too_long,
-                );
+                let to = Next { z: start, own: false, layer: first, sums: next };
+                onward.join(ask, beside, Some(to), here, &mut too_long, &mut task);
             }
-            task.write(start, first, next);
+            for row in first.rows().step_by(LANES) {
+                task.write(start, row, first, next.take(row));
+            }
         }
         (0..LANES).any(|lane| too_long.lane(lane) != 0.0)
     }

@@ -1,13 +1,13 @@
 //! What is done with the layers of a block: forces, whole steps, or only lengths.
 
-use core::ops::Range;
+use core::{iter::zip, ops::Range};
 
 use super::{
-    columns::Columns,
+    columns::{Columns, Eight, LANES},
     join::Ask,
-    layer::{Layer, Sums},
+    layer::Layer,
     march::Border,
-    sweep::Task,
+    task::Task,
 };
 
 /// Finds what accelerates the masses.
@@ -34,10 +34,14 @@ impl Task for Accelerate<'_> {
     }
 
     #[inline(always)]
-    fn write(&mut self, z: usize, layer: &mut Layer, sums: &mut Sums) {
-        let own = &mut self.acceleration[masses(z - self.start, self.layer)];
-        let inverse_mass = &self.inverse_mass[masses(z, self.layer)];
-        layer.each_force(sums, |i, force| own[i] = accelerated(force, inverse_mass[i], self.gravity));
+    fn write(&mut self, z: usize, row: usize, layer: &mut Layer, forces: [Eight; 3]) {
+        let own = &mut self.acceleration[masses(z - self.start, self.layer)][layer.masses(row)];
+        let inverse_mass = &self.inverse_mass[masses(z, self.layer)][layer.masses(row)];
+        let [x, y, z] = forces;
+        let (x, y, z): ([f64; LANES], [f64; LANES], [f64; LANES]) = (x.into(), y.into(), z.into());
+        for (i, (own, inverse_mass)) in zip(own, inverse_mass).enumerate() {
+            *own = accelerated([x[i], y[i], z[i]], *inverse_mass, self.gravity);
+        }
     }
 }
 
@@ -85,6 +89,7 @@ pub(super) struct Move<'a> {
 
 impl Move<'_> {
     /// Deals the masses of the slab out to its layers.
+    #[inline(always)]
     pub(super) fn deal(&self, layers: &mut [Layer]) {
         let start = self.end - layers.len();
         for (i, layer) in layers.iter_mut().enumerate() {
@@ -95,6 +100,7 @@ impl Move<'_> {
     }
 
     /// Gathers them again.
+    #[inline(always)]
     pub(super) fn gather(&mut self, layers: &[Layer]) {
         for (i, layer) in layers.iter().enumerate() {
             let own = masses(i, self.layer);
@@ -113,9 +119,9 @@ impl Task for &mut Move<'_> {
     }
 
     #[inline(always)]
-    fn write(&mut self, _: usize, layer: &mut Layer, sums: &mut Sums) {
+    fn write(&mut self, _: usize, row: usize, layer: &mut Layer, forces: [Eight; 3]) {
         let Motion { rule, gravity, floor, .. } = self.motion;
-        layer.kick(rule, gravity, floor, self.ahead, sums);
+        layer.kick(rule, gravity, floor, self.ahead, row, forces);
     }
 
     #[inline(always)]
@@ -146,7 +152,7 @@ impl Task for Measure<'_> {
     }
 
     #[inline(always)]
-    fn write(&mut self, _: usize, _: &mut Layer, _: &mut Sums) {}
+    fn write(&mut self, _: usize, _: usize, _: &mut Layer, _: [Eight; 3]) {}
 }
 
 /// The masses of a layer.
