@@ -1,7 +1,5 @@
 //! Numbers laid out for the inner loop.
 
-use core::array;
-
 use bytemuck::{Pod, Zeroable};
 
 use crate::mechanics::Lanes;
@@ -19,59 +17,42 @@ pub(super) type Eight = Lanes<LANES>;
 #[repr(C, align(64))]
 struct Line([f64; LANES]);
 
-/// `N` columns of equally many numbers. Each begins with a line of the cache; a vector that lies across two takes twice as long to load and to store.
+/// Numbers of which the first begins a line of the cache; a vector that lies across two takes twice as long to load and to store.
+///
+/// A block has all of its own in one of these: a processor finds what lies together sooner than what lies in many places.
 #[derive(Clone, Debug)]
-pub(super) struct Columns<const N: usize> {
-    lines: Vec<Line>,
-    length: usize,
+pub(super) struct Numbers(Vec<Line>);
+
+impl Numbers {
+    /// Zeros, at least so many.
+    pub(super) fn zeros(count: usize) -> Self {
+        Self(vec![Line::zeroed(); count.div_ceil(LANES)])
+    }
+
+    pub(super) fn all_mut(&mut self) -> &mut [f64] {
+        bytemuck::cast_slice_mut(&mut self.0)
+    }
 }
 
-impl<const N: usize> Columns<N> {
-    /// Zeros, at least `length` of them in each.
-    pub(super) fn zeros(length: usize) -> Self {
-        // An odd number of lines, so that the same place of all columns is never in the same set of the cache.
-        let lines = length.div_ceil(LANES) | 1;
-        Self { lines: vec![Line::zeroed(); N * lines], length: lines * LANES }
-    }
+/// How many numbers a column has that has room for so many: an odd number of lines, so that the same place of columns that follow each other is never in the same set of the
+/// cache.
+pub(super) fn column(room: usize) -> usize {
+    (room.div_ceil(LANES) | 1) * LANES
+}
 
-    #[inline(always)]
-    pub(super) fn each(&self) -> [&[f64]; N] {
-        let mut columns = self.flat().chunks_exact(self.length);
-        array::from_fn(|_| columns.next().unwrap_or_default())
-    }
+/// Three columns of this length, each by itself.
+#[inline(always)]
+pub(super) fn each(flat: &[f64], length: usize) -> [&[f64]; 3] {
+    let (x, rest) = flat.split_at(length);
+    let (y, z) = rest.split_at(length);
+    [x, y, &z[..length]]
+}
 
-    #[inline(always)]
-    pub(super) fn each_mut(&mut self) -> [&mut [f64]; N] {
-        let length = self.length;
-        let mut columns = self.flat_mut().chunks_exact_mut(length);
-        array::from_fn(|_| columns.next().unwrap_or_default())
-    }
-
-    /// How many numbers a column has.
-    pub(super) fn length(&self) -> usize {
-        self.length
-    }
-
-    /// Column after column.
-    #[inline(always)]
-    pub(super) fn flat(&self) -> &[f64] {
-        bytemuck::cast_slice(&self.lines)
-    }
-
-    #[inline(always)]
-    pub(super) fn flat_mut(&mut self) -> &mut [f64] {
-        bytemuck::cast_slice_mut(&mut self.lines)
-    }
-
-    /// Becomes a copy of columns of the same length.
-    pub(super) fn copy(&mut self, other: &Self) {
-        self.lines.copy_from_slice(&other.lines);
-    }
-
-    #[inline(always)]
-    pub(super) fn clear(&mut self) {
-        self.lines.fill(Line::zeroed());
-    }
+#[inline(always)]
+pub(super) fn each_mut(flat: &mut [f64], length: usize) -> [&mut [f64]; 3] {
+    let (x, rest) = flat.split_at_mut(length);
+    let (y, z) = rest.split_at_mut(length);
+    [x, y, &mut z[..length]]
 }
 
 /// The numbers from a place on.

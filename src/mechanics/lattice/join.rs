@@ -3,8 +3,8 @@
 use crate::mechanics::{Lanes, Real};
 
 use super::{
-    columns::{Columns, Eight, HALF, LANES, put, some, three},
-    layer::{Layer, Sums},
+    columns::{Eight, HALF, LANES, put, some, three},
+    layer::{Layer, Shape, Sums},
     task::Task,
 };
 
@@ -43,7 +43,9 @@ pub(super) struct Grid<'a> {
     /// The ways to masses of the same layer, and of the next one.
     pub(super) within: &'a [Way],
     pub(super) onward: &'a [Way],
-    pub(super) masks: &'a Columns<9>,
+    /// A column for each of nine ways across a layer: 1 where a mass of the layer has a neighbour there, 0 elsewhere.
+    pub(super) masks: &'a [f64],
+    pub(super) shape: Shape,
     /// How many layers there are.
     pub(super) layers: usize,
 }
@@ -58,24 +60,25 @@ impl Grid<'_> {
     pub(super) fn join<T: Task>(
         &self,
         ask: Ask,
-        layer: &Layer,
-        mut next: Option<Next<'_>>,
-        sums: &mut Sums,
+        layer: &Layer<'_>,
+        mut next: Option<Next<'_, '_, '_>>,
+        sums: &mut Sums<'_>,
         too_long: &mut Eight,
         task: &mut T,
     ) {
-        let (length, masks, rows, reach) = (self.masks.length(), self.masks.flat(), layer.rows(), layer.reach());
-        let (position, velocity) = (layer.position.flat(), layer.velocity.flat());
-        let forward = sums.forward.flat_mut();
-        let mut own = Ends { position, velocity, back: sums.within.flat_mut() };
+        let Shape { length, pad: reach, .. } = self.shape;
+        let (masks, rows) = (self.masks, self.shape.rows());
+        let (position, velocity) = (layer.position(), layer.velocity());
+        let [forward, within] = sums.own();
+        let mut own = Ends { position, velocity, back: within };
         for row in (rows.start..rows.end + reach).step_by(LANES) {
             if row < rows.end {
                 let position = three(position, length, row);
                 let velocity = if ask == Ask::Damped { three(velocity, length, row) } else { position };
                 let mut springs = Springs { ask, row, length, masks, position, velocity, sum: [Eight::splat(0.0); 3] };
                 if let Some(Next { layer, sums, .. }) = &mut next {
-                    let (position, velocity) = (layer.position.flat(), layer.velocity.flat());
-                    let mut ends = Ends { position, velocity, back: sums.before.flat_mut() };
+                    let (position, velocity) = (layer.position(), layer.velocity());
+                    let mut ends = Ends { position, velocity, back: sums.before() };
                     for way in self.onward {
                         springs.pull(way, &mut ends, too_long);
                     }
@@ -97,12 +100,12 @@ impl Grid<'_> {
 }
 
 /// The next layer.
-pub(super) struct Next<'a> {
+pub(super) struct Next<'a, 'b, 'c> {
     pub(super) z: usize,
     /// Whether the forces on it are complete with the springs that lead to it, and are used.
     pub(super) own: bool,
-    pub(super) layer: &'a mut Layer,
-    pub(super) sums: &'a mut Sums,
+    pub(super) layer: &'a mut Layer<'b>,
+    pub(super) sums: &'a mut Sums<'c>,
 }
 
 /// The columns of a layer in which springs end, and the sums of what they pull back with.

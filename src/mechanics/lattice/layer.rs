@@ -5,104 +5,180 @@ use core::{iter::zip, ops::Range};
 use crate::mechanics::Real;
 
 use super::{
-    columns::{Columns, Eight, LANES, clear, put, some, three},
+    columns::{Eight, LANES, clear, column, each, each_mut, put, some, three},
     tasks::KickDrift,
 };
 
-/// A layer of the grid, coordinate by coordinate, with room for neighbours that are not there on either side.
-#[derive(Clone, Debug)]
-pub(super) struct Layer {
-    /// Where the first mass is in the columns: there is room for any neighbour before it.
-    pad: usize,
+/// How the columns of all layers of a block are laid out.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Shape {
+    /// Where the first mass is in a column: there is room for any neighbour before it.
+    pub(super) pad: usize,
     /// How many masses there are.
-    count: usize,
-    pub(super) position: Columns<3>,
-    pub(super) velocity: Columns<3>,
-    inverse_mass: Columns<1>,
+    pub(super) count: usize,
+    /// How many numbers a column has.
+    pub(super) length: usize,
+}
+
+impl Shape {
+    /// That of a layer of so many masses, of which no neighbour is further than so many others.
+    pub(super) fn new(count: usize, furthest: usize) -> Self {
+        // Room for neighbours that are not there on either side, whole vectors of them.
+        let pad = furthest.next_multiple_of(LANES);
+        Self { pad, count, length: column(2 * pad + count.next_multiple_of(LANES) + LANES) }
+    }
+
+    /// How many numbers a layer has: places, velocities, inverse masses.
+    #[inline(always)]
+    pub(super) fn layer(self) -> usize {
+        7 * self.length
+    }
+
+    /// How many numbers the sums of a layer have.
+    #[inline(always)]
+    pub(super) fn sums(self) -> usize {
+        9 * self.length
+    }
+
+    /// The rows of the masses, a whole number of vectors.
+    #[inline(always)]
+    pub(super) fn rows(self) -> Range<usize> {
+        self.pad..self.pad + self.count.next_multiple_of(LANES)
+    }
+
+    /// Those of eight masses from a row on that there are, by their numbers in the layer.
+    #[inline(always)]
+    pub(super) fn masses(self, row: usize) -> Range<usize> {
+        let first = row - self.pad;
+        first..(first + LANES).min(self.count)
+    }
+}
+
+/// A layer of the grid, coordinate by coordinate.
+pub(super) struct Layer<'a> {
+    shape: Shape,
+    /// Places, then velocities, then inverse masses.
+    columns: &'a mut [f64],
 }
 
 /// The sums of the forces of springs on a layer.
-#[derive(Clone, Debug)]
-pub(super) struct Sums {
-    /// On the masses at which they begin. Found as a whole, and not added to.
-    pub(super) forward: Columns<3>,
-    /// On the masses at which they end, from the same layer.
-    pub(super) within: Columns<3>,
-    /// From the layer before.
-    pub(super) before: Columns<3>,
+pub(super) struct Sums<'a> {
+    length: usize,
+    /// On the masses at which they begin, found as a whole and not added to; on those at which they end, from the same layer; and these from the layer before.
+    columns: &'a mut [f64],
 }
 
-impl Sums {
-    pub(super) fn new(room: usize) -> Self {
-        Self { forward: Columns::zeros(room), within: Columns::zeros(room), before: Columns::zeros(room) }
+impl<'a> Sums<'a> {
+    #[inline(always)]
+    pub(super) fn new(shape: Shape, columns: &'a mut [f64]) -> Self {
+        Self { length: shape.length, columns: &mut columns[..shape.sums()] }
+    }
+
+    /// Forward on the masses at which springs begin, and back on those at which they end, within the layer.
+    #[inline(always)]
+    pub(super) fn own(&mut self) -> [&mut [f64]; 2] {
+        let (forward, within) = self.columns[..6 * self.length].split_at_mut(3 * self.length);
+        [forward, within]
+    }
+
+    /// Back on the masses at which springs from the layer before end.
+    #[inline(always)]
+    pub(super) fn before(&mut self) -> &mut [f64] {
+        &mut self.columns[6 * self.length..9 * self.length]
     }
 
     /// Sums up what acts on the eight masses that begin with a row. What springs pull back with is zero afterwards.
     #[inline(always)]
     pub(super) fn take(&mut self, row: usize) -> [Eight; 3] {
-        let length = self.forward.length();
-        let [x, y, z]: [Eight; 3] = three(self.forward.flat(), length, row);
-        let [wx, wy, wz] = three(self.within.flat(), length, row);
-        let [bx, by, bz] = three(self.before.flat(), length, row);
-        clear(self.within.flat_mut(), length, row);
-        clear(self.before.flat_mut(), length, row);
+        let length = self.length;
+        let [forward, within] = self.own();
+        let [x, y, z]: [Eight; 3] = three(forward, length, row);
+        let [wx, wy, wz] = three(within, length, row);
+        clear(within, length, row);
+        let before = self.before();
+        let [bx, by, bz] = three(before, length, row);
+        clear(before, length, row);
         [x + (wx + bx), y + (wy + by), z + (wz + bz)]
     }
 }
 
-impl Layer {
-    pub(super) fn new(room: usize, pad: usize, count: usize) -> Self {
-        let (position, velocity, inverse_mass) = (Columns::zeros(room), Columns::zeros(room), Columns::zeros(room));
-        Self { pad, count, position, velocity, inverse_mass }
+impl<'a> Layer<'a> {
+    #[inline(always)]
+    pub(super) fn new(shape: Shape, columns: &'a mut [f64]) -> Self {
+        Self { shape, columns: &mut columns[..shape.layer()] }
     }
 
-    /// The rows of the masses, a whole number of vectors.
     #[inline(always)]
-    pub(super) fn rows(&self) -> Range<usize> {
-        self.pad..self.pad + self.count.next_multiple_of(LANES)
+    pub(super) fn shape(&self) -> Shape {
+        self.shape
     }
 
-    /// By how many rows the neighbours of a mass are further at most, rounded up to vectors.
+    /// Where its masses are.
     #[inline(always)]
-    pub(super) fn reach(&self) -> usize {
-        self.pad
+    pub(super) fn position(&self) -> &[f64] {
+        &self.columns[..3 * self.shape.length]
+    }
+
+    /// How they move.
+    #[inline(always)]
+    pub(super) fn velocity(&self) -> &[f64] {
+        &self.columns[3 * self.shape.length..6 * self.shape.length]
+    }
+
+    /// Where its masses are, how they move, and one by their masses.
+    #[inline(always)]
+    fn parts(&mut self) -> [&mut [f64]; 3] {
+        let (position, rest) = self.columns.split_at_mut(3 * self.shape.length);
+        let (velocity, inverse_mass) = rest.split_at_mut(3 * self.shape.length);
+        [position, velocity, inverse_mass]
+    }
+
+    /// Becomes a copy of another.
+    pub(super) fn copy(&mut self, columns: &[f64]) {
+        self.columns.copy_from_slice(&columns[..self.shape.layer()]);
     }
 
     /// Puts the masses of a layer here.
     #[inline(always)]
     pub(super) fn deal(&mut self, position: &[[f64; 3]], velocity: Option<&[[f64; 3]]>) {
-        deal(position, &mut self.position, self.pad);
+        let Shape { pad, length, .. } = self.shape;
+        let [own_position, own_velocity, _] = self.parts();
+        deal(position, each_mut(own_position, length), pad);
         if let Some(velocity) = velocity {
-            deal(velocity, &mut self.velocity, self.pad);
+            deal(velocity, each_mut(own_velocity, length), pad);
         }
     }
 
     /// Puts the inverse masses here.
     pub(super) fn weigh(&mut self, inverse_mass: &[f64]) {
-        let [column] = self.inverse_mass.each_mut();
-        column[self.pad..self.pad + self.count].copy_from_slice(inverse_mass);
+        let Shape { pad, count, .. } = self.shape;
+        let [_, _, column] = self.parts();
+        column[pad..pad + count].copy_from_slice(inverse_mass);
     }
 
     /// Writes where its masses are and how they move.
     #[inline(always)]
     pub(super) fn gather(&self, position: &mut [[f64; 3]], velocity: &mut [[f64; 3]]) {
-        gather(&self.position, self.pad, position);
-        gather(&self.velocity, self.pad, velocity);
+        let Shape { pad, length, .. } = self.shape;
+        gather(each(self.position(), length), pad, position);
+        gather(each(self.velocity(), length), pad, velocity);
     }
 
     /// Becomes what another layer of the block will be when it has drifted for so long; with its velocity where that is asked for.
-    pub(super) fn foresee(&mut self, other: &Self, reach: f64, velocity: bool) {
-        self.position.copy(&other.position);
-        drift(&mut self.position, &other.velocity, reach);
+    pub(super) fn foresee(&mut self, other: &Layer<'_>, reach: f64, velocity: bool) {
+        let [own_position, own_velocity, _] = self.parts();
+        own_position.copy_from_slice(other.position());
+        drift(own_position, other.velocity(), reach);
         if velocity {
-            self.velocity.copy(&other.velocity);
+            own_velocity.copy_from_slice(other.velocity());
         }
     }
 
     /// Moves its masses on for so long.
     #[inline(always)]
     pub(super) fn drift(&mut self, reach: f64) {
-        drift(&mut self.position, &self.velocity, reach);
+        let [position, velocity, _] = self.parts();
+        drift(position, velocity, reach);
     }
 
     /// Kicks eight of its masses by the forces on them, which they feel where they are, and lets them drift on. What comes to be below a floor is put back on it and loses
@@ -117,11 +193,12 @@ impl Layer {
         row: usize,
         forces: [Eight; 3],
     ) {
-        let length = self.position.length();
-        let inverse_mass = some(self.inverse_mass.flat(), row);
+        let length = self.shape.length;
+        let [position, velocity, inverse_mass] = self.parts();
+        let inverse_mass = some(inverse_mass, row);
         let [fx, fy, fz] = forces;
-        let [x, y, z] = three(self.position.flat(), length, row);
-        let [vx, vy, vz] = three(self.velocity.flat(), length, row);
+        let [x, y, z] = three(position, length, row);
+        let [vx, vy, vz] = three(velocity, length, row);
         let kick = Kick { rule, inverse_mass, ahead };
         let (x, vx) = kick.moves::<false>(x, vx, fx * inverse_mass);
         let (z, vz) = kick.moves::<false>(z, vz, fz * inverse_mass);
@@ -129,15 +206,8 @@ impl Layer {
         let zero = Eight::splat(0.0);
         let down = fy * inverse_mass - zero.if_below(inverse_mass, Eight::splat(gravity), zero);
         let (y, vy) = if floor { kick.moves::<true>(y, vy, down) } else { kick.moves::<false>(y, vy, down) };
-        put(self.position.flat_mut(), length, row, [x, y, z]);
-        put(self.velocity.flat_mut(), length, row, [vx, vy, vz]);
-    }
-
-    /// Those of eight masses from a row on that there are, by their numbers in the layer.
-    #[inline(always)]
-    pub(super) fn masses(&self, row: usize) -> Range<usize> {
-        let first = row - self.pad;
-        first..(first + LANES).min(self.count)
+        put(position, length, row, [x, y, z]);
+        put(velocity, length, row, [vx, vy, vz]);
     }
 }
 
@@ -171,12 +241,10 @@ impl Kick {
 }
 
 #[inline(always)]
-fn drift(position: &mut Columns<3>, velocity: &Columns<3>, reach: f64) {
+fn drift(position: &mut [f64], velocity: &[f64], reach: f64) {
     if reach > 0.0 {
-        for (position, velocity) in zip(position.each_mut(), velocity.each()) {
-            for (x, v) in zip(position, velocity) {
-                *x += *v * reach;
-            }
+        for (x, v) in zip(position, velocity) {
+            *x += *v * reach;
         }
     }
 }
@@ -184,9 +252,9 @@ fn drift(position: &mut Columns<3>, velocity: &Columns<3>, reach: f64) {
 /// Deals the coordinates of vectors out to a column each. What the last vector has room for beside them becomes zero: something that is not finite may be left of an
 /// explosion.
 #[inline(always)]
-fn deal(vectors: &[[f64; 3]], columns: &mut Columns<3>, pad: usize) {
+fn deal(vectors: &[[f64; 3]], columns: [&mut [f64]; 3], pad: usize) {
     let count = vectors.len();
-    let [x, y, z] = columns.each_mut().map(|column| {
+    let [x, y, z] = columns.map(|column| {
         let (masses, beside) = column[pad..pad + count.next_multiple_of(LANES)].split_at_mut(count);
         beside.fill(0.0);
         masses
@@ -200,9 +268,9 @@ fn deal(vectors: &[[f64; 3]], columns: &mut Columns<3>, pad: usize) {
 
 /// Gathers vectors from a column for each coordinate.
 #[inline(always)]
-fn gather(columns: &Columns<3>, pad: usize, vectors: &mut [[f64; 3]]) {
+fn gather(columns: [&[f64]; 3], pad: usize, vectors: &mut [[f64; 3]]) {
     let count = vectors.len();
-    let [x, y, z] = columns.each().map(|column| &column[pad..pad + count]);
+    let [x, y, z] = columns.map(|column| &column[pad..pad + count]);
     for i in 0..count {
         vectors[i] = [x[i], y[i], z[i]];
     }

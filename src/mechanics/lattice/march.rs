@@ -10,7 +10,12 @@ use std::{
     thread,
 };
 
-use super::{columns::Columns, join::Ask, layer::Layer, sweep::Slab, tasks::Move};
+use super::{
+    join::Ask,
+    layer::{Layer, Shape},
+    sweep::Slab,
+    tasks::Move,
+};
 
 /// Takes so many steps with slabs, each on a thread that stays awake in between. Whether any spring was too long.
 ///
@@ -32,57 +37,59 @@ impl Slab<'_, Move<'_>> {
     fn march(&mut self, steps: u64) -> bool {
         let [before, behind] = self.task.borders;
         let _closing = Closing([before, behind]);
-        pulp::Arch::new().dispatch(Deal(&self.task, self.layers));
+        let shape = self.grid.shape;
+        pulp::Arch::new().dispatch(Deal(&self.task, shape, self.layers));
         let (reach, damped) = (self.task.motion.rule.before, self.ask == Ask::Damped);
         let mut found = false;
         for step in 0..steps {
             let [still, ahead] = [step == 0, step + 1 < steps].map(|drifts| if drifts { reach } else { 0.0 });
             (self.task.still, self.task.ahead) = (still, ahead);
-            if let (Some(border), Some(layer)) = (before, self.layers.first()) {
-                border.layer.send(|into| into.foresee(layer, still, damped));
+            if let Some(border) = before {
+                let first = Layer::new(shape, self.layers);
+                border.layer.send(|into| Layer::new(shape, into).foresee(&first, still, damped));
             }
             found |= pulp::Arch::new().dispatch(self.again());
         }
-        pulp::Arch::new().dispatch(Gather(&mut self.task, self.layers));
+        pulp::Arch::new().dispatch(Gather(&mut self.task, shape, self.layers));
         found
     }
 }
 
 /// Deals the masses of a slab out to its layers, in the widest vectors that there are.
-struct Deal<'a, 'b>(&'a Move<'b>, &'a mut [Layer]);
+struct Deal<'a, 'b>(&'a Move<'b>, Shape, &'a mut [f64]);
 
 impl pulp::NullaryFnOnce for Deal<'_, '_> {
     type Output = ();
 
     #[inline(always)]
     fn call(self) {
-        self.0.deal(self.1);
+        self.0.deal(self.1, self.2);
     }
 }
 
 /// Gathers them again.
-struct Gather<'a, 'b>(&'a mut Move<'b>, &'a [Layer]);
+struct Gather<'a, 'b>(&'a mut Move<'b>, Shape, &'a mut [f64]);
 
 impl pulp::NullaryFnOnce for Gather<'_, '_> {
     type Output = ();
 
     #[inline(always)]
     fn call(self) {
-        self.0.gather(self.1);
+        self.0.gather(self.1, self.2);
     }
 }
 
 /// What two slabs that lie one behind the other tell each other in each step.
 pub(super) struct Border {
     /// From the one behind: its first layer where it feels the springs.
-    pub(super) layer: Post<Layer>,
+    pub(super) layer: Post<Vec<f64>>,
     /// From the one before, thereafter: the sums of the springs that lead to that layer.
-    pub(super) sums: Post<Columns<3>>,
+    pub(super) sums: Post<Vec<f64>>,
 }
 
 impl Border {
-    pub(super) fn new(layer: &Layer) -> Self {
-        Self { layer: Post::new(layer.clone()), sums: Post::new(layer.position.clone()) }
+    pub(super) fn new(shape: Shape) -> Self {
+        Self { layer: Post::new(vec![0.0; shape.layer()]), sums: Post::new(vec![0.0; 3 * shape.length]) }
     }
 }
 

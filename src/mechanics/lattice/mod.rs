@@ -22,11 +22,11 @@ use crate::body::{Lattice, Neighbours};
 
 use super::{BodyParts, Model, Real, State, ground::ContactKind, model::LONGEST_STRETCH};
 
-use columns::{Columns, LANES};
+use columns::Numbers;
 use join::{Ask, Grid, Way};
-use layer::{Layer, Sums};
+use layer::Shape;
 use march::{Border, march};
-use sweep::{Scratch, Slab, run};
+use sweep::{Slab, run, scratch};
 use tasks::{Accelerate, Measure, Motion, Move};
 
 pub(super) use tasks::KickDrift;
@@ -37,6 +37,9 @@ const PARTICLES_A_THREAD: usize = 4096;
 /// So many layers are at hand at a time. What is gone through once needs room for no more, and stays in the cache.
 const AT_HAND: usize = 2;
 
+/// Ways across a layer: none or one along each of two axes, in either direction.
+const MASKS: usize = 9;
+
 /// A block as the force loop reads it.
 #[derive(Clone, Debug)]
 pub(super) struct LatticeRows {
@@ -44,14 +47,14 @@ pub(super) struct LatticeRows {
     /// The ways along which there are springs: within a layer, and to the next.
     within: Vec<Way>,
     onward: Vec<Way>,
-    /// For each of nine ways across a layer, 1 where a mass of the layer has a neighbour there, 0 elsewhere.
-    masks: Columns<9>,
     damped: bool,
     /// How long a spring of each kind is when the watch holds the body for exploded.
     longest: [f64; 3],
-    /// Scratch: all layers, and what each slab needs beside its own.
-    layers: Vec<Layer>,
-    scratch: Vec<Scratch>,
+    shape: Shape,
+    /// Among how many threads its layers are shared.
+    slabs: usize,
+    /// The masks; then what each slab needs beside its layers; then all layers.
+    numbers: Numbers,
 }
 
 impl BodyParts<'_> {
@@ -77,19 +80,8 @@ impl LatticeRows {
     pub(super) fn of(body: &BodyParts<'_>) -> Option<Self> {
         let lattice = body.lattice.filter(|_| body.is_regular())?;
         let [across, along, _] = lattice.size();
-        let layer = across * along;
-        // Room for a neighbour before the first mass and behind the last, whole vectors of them.
-        let pad = (across + 1).next_multiple_of(LANES);
-        let room = 2 * pad + layer.next_multiple_of(LANES) + LANES;
-        let mut masks = Columns::zeros(room);
-        for (way, mask) in masks.each_mut().into_iter().enumerate() {
-            let (dx, dy) = (way % 3, way / 3);
-            for (i, value) in mask[pad..pad + layer].iter_mut().enumerate() {
-                // One more than where the neighbour is.
-                let (x, y) = (i % across + dx, i / across + dy);
-                *value = f64::from(u8::from((1..=across).contains(&x) && (1..=along).contains(&y)));
-            }
-        }
+        let shape = Shape::new(across * along, across + 1);
+        let Shape { pad, count, length } = shape;
         let (mut within, mut onward, mut damped, mut longest) = (Vec::new(), Vec::new(), false, [0.0; 3]);
         for kind in Neighbours::ALL {
             let Some(spring) = body.springs.uniform(lattice.range(kind)) else { continue };
@@ -98,7 +90,7 @@ impl LatticeRows {
             for &[dx, dy, dz] in kind.ways() {
                 let way = Way {
                     from: pad + if dy < 0 { across } else { 0 },
-                    upto: pad + layer.saturating_sub(if dy > 0 { across } else { 0 }),
+                    upto: pad + count.saturating_sub(if dy > 0 { across } else { 0 }),
                     offset: lattice.offset([dx, dy, 0]) as isize,
                     mask: (dx + 1 + 3 * (dy + 1)) as usize,
                     stiffness: spring.stiffness,
@@ -112,17 +104,17 @@ impl LatticeRows {
         // Sums of neighbours side by side overlap, and would have to wait for each other; so ways to other rows come in between: first those straight on, then to either side.
         let side = |way: &Way| [2, 0, 1][way.mask % 3];
         onward.sort_by_key(side);
-        let rows = Self { lattice, within, onward, masks, damped, longest, layers: Vec::new(), scratch: Vec::new() };
-        let slabs = rows.slabs();
-        let layer = Layer::new(room, pad, layer);
-        let scratch = Scratch { beside: layer.clone(), sums: [Sums::new(room), Sums::new(room)] };
-        Some(Self { layers: vec![layer; lattice.size()[2]], scratch: vec![scratch; slabs], ..rows })
-    }
-
-    /// Among how many threads its layers are shared.
-    fn slabs(&self) -> usize {
-        let threads = ComputeTaskPool::try_get().map_or(1, |pool| pool.thread_num());
-        (self.lattice.particles() / PARTICLES_A_THREAD).min(threads).min(self.lattice.size()[2]).max(1)
+        let slabs = slabs(lattice);
+        let mut numbers = Numbers::zeros(MASKS * length + slabs * scratch(shape) + lattice.size()[2] * shape.layer());
+        for (way, mask) in numbers.all_mut()[..MASKS * length].chunks_exact_mut(length).enumerate() {
+            let (dx, dy) = (way % 3, way / 3);
+            for (i, value) in mask[pad..pad + count].iter_mut().enumerate() {
+                // One more than where the neighbour is.
+                let (x, y) = (i % across + dx, i / across + dy);
+                *value = f64::from(u8::from((1..=across).contains(&x) && (1..=along).contains(&y)));
+            }
+        }
+        Some(Self { lattice, within, onward, damped, longest, shape, slabs, numbers })
     }
 
     /// The ends of all springs in order, and the length at which the watch holds the body for exploded.
@@ -141,12 +133,16 @@ impl LatticeRows {
         at_hand: usize,
         mut task: impl FnMut(usize, usize) -> T,
     ) -> Vec<Slab<'a, T>> {
-        let Self { within, onward, masks, layers, scratch, .. } = self;
-        let grid = Grid { within, onward, masks, layers: layers.len() };
-        let share = layers.len().div_ceil(scratch.len());
-        let slabs = layers.chunks_mut(share).zip(scratch).enumerate().map(|(i, (layers, scratch))| {
-            let (start, count) = (i * share, layers.len());
-            let layers = &mut layers[..count.min(at_hand)];
+        let Self { lattice, within, onward, shape, slabs, numbers, .. } = self;
+        let (layers, shape) = (lattice.size()[2], *shape);
+        let share = layers.div_ceil(*slabs);
+        let (masks, rest) = numbers.all_mut().split_at_mut(MASKS * shape.length);
+        let (beside, rest) = rest.split_at_mut(*slabs * scratch(shape));
+        let grid = Grid { within, onward, masks, shape, layers };
+        let own = rest[..layers * shape.layer()].chunks_mut(share * shape.layer());
+        let slabs = own.zip(beside.chunks_exact_mut(scratch(shape))).enumerate().map(|(i, (own, scratch))| {
+            let (start, count) = (i * share, own.len() / shape.layer());
+            let layers = &mut own[..count.min(at_hand) * shape.layer()];
             Slab { grid, ask, range: start..start + count, layers, scratch, task: task(start, count) }
         });
         slabs.collect()
@@ -161,7 +157,7 @@ impl LatticeRows {
         gravity: f64,
         acceleration: &mut [[f64; 3]],
     ) -> bool {
-        let (layer, ask, mut left) = (self.layer(), self.asks_forces(), acceleration);
+        let (layer, ask, mut left) = (self.shape.count, self.asks_forces(), acceleration);
         run(self.slabs_of(ask, AT_HAND, |start, count| {
             let (acceleration, rest) = core::mem::take(&mut left).split_at_mut(count * layer);
             left = rest;
@@ -171,8 +167,8 @@ impl LatticeRows {
 
     /// Takes so many steps. Whether a spring was too long.
     fn steps(&mut self, steps: u64, motion: Motion<'_>, mut x: &mut [[f64; 3]], mut v: &mut [[f64; 3]]) -> bool {
-        let (layer, ask) = (self.layer(), self.asks_forces());
-        let borders: Vec<_> = (1..self.scratch.len()).map(|_| Border::new(&self.layers[0])).collect();
+        let (layer, ask) = (self.shape.count, self.asks_forces());
+        let borders: Vec<_> = (1..self.slabs).map(|_| Border::new(self.shape)).collect();
         let mut behind = borders.iter();
         let mut before = None;
         let slabs = self.slabs_of(ask, usize::MAX, |start, count| {
@@ -189,12 +185,12 @@ impl LatticeRows {
     fn asks_forces(&self) -> Ask {
         if self.damped { Ask::Damped } else { Ask::Stiff }
     }
+}
 
-    /// How many masses a layer has.
-    fn layer(&self) -> usize {
-        let [across, along, _] = self.lattice.size();
-        across * along
-    }
+/// Among how many threads the layers of a block are shared.
+fn slabs(lattice: Lattice) -> usize {
+    let threads = ComputeTaskPool::try_get().map_or(1, |pool| pool.thread_num());
+    (lattice.particles() / PARTICLES_A_THREAD).min(threads).min(lattice.size()[2]).max(1)
 }
 
 /// The vectors of a body alone, which have three coordinates.
@@ -246,7 +242,7 @@ impl<R: Real, const D: usize> Model<R, D> {
     pub(super) fn note_lattice(&mut self, state: &State<R, D>) {
         let Self { lattice: Some(rows), overstretched, .. } = self else { return };
         let Some(position) = vectors(&state.position) else { return };
-        let layer = rows.layer();
+        let layer = rows.shape.count;
         if run(rows.slabs_of(Ask::Lengths, AT_HAND, |_, _| Measure { position, layer })) {
             *overstretched = R::splat(1.0);
         }

@@ -9,7 +9,7 @@ use crate::mechanics::Real;
 use super::{
     columns::{Eight, LANES},
     join::{Ask, Grid, Next},
-    layer::{Layer, Sums},
+    layer::{Layer, Shape, Sums},
     task::Task,
 };
 
@@ -19,18 +19,16 @@ pub(super) struct Slab<'a, T> {
     pub(super) ask: Ask,
     pub(super) range: Range<usize>,
     /// Room for all of its layers, or for two that are at hand.
-    pub(super) layers: &'a mut [Layer],
-    pub(super) scratch: &'a mut Scratch,
+    pub(super) layers: &'a mut [f64],
+    /// Room for [what it needs beside them](scratch).
+    pub(super) scratch: &'a mut [f64],
     pub(super) task: T,
 }
 
-/// What a slab needs room for beside its layers.
-#[derive(Clone, Debug)]
-pub(super) struct Scratch {
-    /// A layer that belongs to another slab.
-    pub(super) beside: Layer,
-    /// Of the two layers at hand; what leads back is zero but while they are.
-    pub(super) sums: [Sums; 2],
+/// How many numbers a slab needs room for beside its layers: a layer that belongs to another slab, and the sums of the two layers at hand. What leads back is zero but while
+/// they are.
+pub(super) fn scratch(shape: Shape) -> usize {
+    shape.layer() + 2 * shape.sums()
 }
 
 impl<T> Slab<'_, T> {
@@ -75,43 +73,47 @@ impl<T: Task> Slab<'_, T> {
     #[inline(always)]
     fn sweep(self, ask: Ask) -> bool {
         let Self { grid, range, layers, scratch, mut task, .. } = self;
-        let Scratch { beside, sums: [here, next] } = scratch;
-        let (mut here, mut next) = (here, next);
+        let shape = grid.shape;
+        let (beside, sums) = scratch.split_at_mut(shape.layer());
+        let (here, next) = sums.split_at_mut(shape.sums());
+        let (mut here, mut next) = (&mut Sums::new(shape, here), &mut Sums::new(shape, next));
         let mut too_long = Eight::splat(0.0);
-        let (start, end) = (range.start, range.end);
+        let (start, end, at_hand) = (range.start, range.end, layers.len() / shape.layer());
         for z in range.rev() {
-            let [at, after] = [z - start, z - start + 1].map(|i| i % layers.len());
-            let (layer, behind) = match layers.get_disjoint_mut([at, after]) {
+            let [at, after] = [z - start, z - start + 1].map(|i| {
+                let first = i % at_hand * shape.layer();
+                first..first + shape.layer()
+            });
+            let (layer, behind) = match layers.get_disjoint_mut([at.clone(), after]) {
                 Ok([layer, behind]) if z + 1 < end => (layer, Some(behind)),
                 _ => (&mut layers[at], None),
             };
+            let (layer, own) = (&mut Layer::new(shape, layer), behind.is_some());
+            let mut to = Layer::new(shape, behind.unwrap_or(beside));
             task.read(z, layer);
-            let (to, own) = match behind {
-                Some(behind) => (behind, true),
-                None => (&mut *beside, false),
-            };
             let inner = z + 1 < grid.layers;
             if inner && !own {
-                task.read(z + 1, to);
+                task.read(z + 1, &mut to);
             }
-            let behind = inner.then_some(Next { z: z + 1, own, layer: to, sums: next });
+            let behind = inner.then_some(Next { z: z + 1, own, layer: &mut to, sums: next });
             grid.join(ask, layer, behind, here, &mut too_long, &mut task);
             if inner && !own && ask != Ask::Lengths {
-                task.hand_on(&next.before);
-                next.before.clear();
+                task.hand_on(next.before());
+                next.before().fill(0.0);
             }
             swap(&mut here, &mut next);
         }
-        let first = layers.first_mut().filter(|_| ask != Ask::Lengths);
-        if let Some(first) = first {
-            if start > 0 && !task.take_over(&mut next.before) {
+        if ask != Ask::Lengths {
+            let mut first = Layer::new(shape, layers);
+            if start > 0 && !task.take_over(next.before()) {
+                let beside = &mut Layer::new(shape, beside);
                 task.read(start - 1, beside);
                 let onward = Grid { within: &[], ..grid };
-                let to = Next { z: start, own: false, layer: first, sums: next };
+                let to = Next { z: start, own: false, layer: &mut first, sums: next };
                 onward.join(ask, beside, Some(to), here, &mut too_long, &mut task);
             }
-            for row in first.rows().step_by(LANES) {
-                task.write(start, row, first, next.take(row));
+            for row in shape.rows().step_by(LANES) {
+                task.write(start, row, &mut first, next.take(row));
             }
         }
         (0..LANES).any(|lane| too_long.lane(lane) != 0.0)

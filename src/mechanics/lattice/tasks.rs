@@ -3,9 +3,9 @@
 use core::{iter::zip, ops::Range};
 
 use super::{
-    columns::{Columns, Eight, LANES},
+    columns::{Eight, LANES},
     join::Ask,
-    layer::Layer,
+    layer::{Layer, Shape},
     march::Border,
     task::Task,
 };
@@ -27,16 +27,16 @@ pub(super) struct Accelerate<'a> {
 
 impl Task for Accelerate<'_> {
     #[inline(always)]
-    fn read(&mut self, z: usize, layer: &mut Layer) {
+    fn read(&mut self, z: usize, layer: &mut Layer<'_>) {
         let masses = masses(z, self.layer);
         let velocity = (self.ask == Ask::Damped).then(|| &self.velocity[masses.clone()]);
         layer.deal(&self.position[masses], velocity);
     }
 
     #[inline(always)]
-    fn write(&mut self, z: usize, row: usize, layer: &mut Layer, forces: [Eight; 3]) {
-        let own = &mut self.acceleration[masses(z - self.start, self.layer)][layer.masses(row)];
-        let inverse_mass = &self.inverse_mass[masses(z, self.layer)][layer.masses(row)];
+    fn write(&mut self, z: usize, row: usize, layer: &mut Layer<'_>, forces: [Eight; 3]) {
+        let own = &mut self.acceleration[masses(z - self.start, self.layer)][layer.shape().masses(row)];
+        let inverse_mass = &self.inverse_mass[masses(z, self.layer)][layer.shape().masses(row)];
         let [x, y, z] = forces;
         let (x, y, z): ([f64; LANES], [f64; LANES], [f64; LANES]) = (x.into(), y.into(), z.into());
         for (i, (own, inverse_mass)) in zip(own, inverse_mass).enumerate() {
@@ -90,10 +90,10 @@ pub(super) struct Move<'a> {
 impl Move<'_> {
     /// Deals the masses of the slab out to its layers.
     #[inline(always)]
-    pub(super) fn deal(&self, layers: &mut [Layer]) {
-        let start = self.end - layers.len();
-        for (i, layer) in layers.iter_mut().enumerate() {
-            let own = masses(i, self.layer);
+    pub(super) fn deal(&self, shape: Shape, layers: &mut [f64]) {
+        let start = self.end - layers.len() / shape.layer();
+        for (i, columns) in layers.chunks_exact_mut(shape.layer()).enumerate() {
+            let (own, mut layer) = (masses(i, self.layer), Layer::new(shape, columns));
             layer.deal(&self.position[own.clone()], Some(&self.velocity[own]));
             layer.weigh(&self.motion.inverse_mass[masses(start + i, self.layer)]);
         }
@@ -101,40 +101,40 @@ impl Move<'_> {
 
     /// Gathers them again.
     #[inline(always)]
-    pub(super) fn gather(&mut self, layers: &[Layer]) {
-        for (i, layer) in layers.iter().enumerate() {
+    pub(super) fn gather(&mut self, shape: Shape, layers: &mut [f64]) {
+        for (i, columns) in layers.chunks_exact_mut(shape.layer()).enumerate() {
             let own = masses(i, self.layer);
-            layer.gather(&mut self.position[own.clone()], &mut self.velocity[own]);
+            Layer::new(shape, columns).gather(&mut self.position[own.clone()], &mut self.velocity[own]);
         }
     }
 }
 
 impl Task for &mut Move<'_> {
     #[inline(always)]
-    fn read(&mut self, z: usize, layer: &mut Layer) {
+    fn read(&mut self, z: usize, layer: &mut Layer<'_>) {
         match self.borders {
-            [_, Some(border)] if z == self.end => border.layer.receive(|first| core::mem::swap(layer, first)),
+            [_, Some(border)] if z == self.end => border.layer.receive(|first| layer.copy(first)),
             _ => layer.drift(self.still),
         }
     }
 
     #[inline(always)]
-    fn write(&mut self, _: usize, row: usize, layer: &mut Layer, forces: [Eight; 3]) {
+    fn write(&mut self, _: usize, row: usize, layer: &mut Layer<'_>, forces: [Eight; 3]) {
         let Motion { rule, gravity, floor, .. } = self.motion;
         layer.kick(rule, gravity, floor, self.ahead, row, forces);
     }
 
     #[inline(always)]
-    fn hand_on(&mut self, sums: &Columns<3>) {
+    fn hand_on(&mut self, sums: &[f64]) {
         if let [_, Some(border)] = self.borders {
-            border.sums.send(|into| into.copy(sums));
+            border.sums.send(|into| into.copy_from_slice(sums));
         }
     }
 
     #[inline(always)]
-    fn take_over(&mut self, sums: &mut Columns<3>) -> bool {
+    fn take_over(&mut self, sums: &mut [f64]) -> bool {
         let [border, _] = self.borders;
-        border.inspect(|border| border.sums.receive(|from| core::mem::swap(sums, from))).is_some()
+        border.inspect(|border| border.sums.receive(|from| sums.copy_from_slice(from))).is_some()
     }
 }
 
@@ -147,12 +147,12 @@ pub(super) struct Measure<'a> {
 
 impl Task for Measure<'_> {
     #[inline(always)]
-    fn read(&mut self, z: usize, layer: &mut Layer) {
+    fn read(&mut self, z: usize, layer: &mut Layer<'_>) {
         layer.deal(&self.position[masses(z, self.layer)], None);
     }
 
     #[inline(always)]
-    fn write(&mut self, _: usize, _: usize, _: &mut Layer, _: [Eight; 3]) {}
+    fn write(&mut self, _: usize, _: usize, _: &mut Layer<'_>, _: [Eight; 3]) {}
 }
 
 /// The masses of a layer.
