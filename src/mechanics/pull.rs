@@ -4,7 +4,7 @@
 //! as if its damper acted at the end of the step. For any motion of the whole, with the mass of the hand as a part t of the mass that moves, the pair (h·γ, h²·κ) of
 //! rates that a method sees is then (1 − t) of the body's own and t of (1, h·κ/D), and h·κ/D ≤ ¼. Steps of semi-implicit Euler are stable while h²κ + 2hγ ≤ 4,
 //! of the other methods within regions of that plane which hold that point and all between it and what is stable without a hand: **no step that is stable without
-//! the hand is unstable with it**. As dt becomes small, the hand has no mass.
+//! the hand is unstable with it**. As dt becomes small, the hand has no mass. The exact flow, which is stable at any step, feels a hand without mass.
 
 use super::{BodyParts, Model, Real, integrators::Method};
 
@@ -29,9 +29,10 @@ pub(super) struct PullRow {
 }
 
 impl PullRow {
-    /// The pull at a body that is stepped by `dt`; nothing where its particle is pinned or does not exist, and by the exact flow, which knows no hand.
+    /// The pull at a body that is stepped by `dt`; nothing where its particle is pinned or does not exist.
     pub(super) fn of(body: &BodyParts<'_>, dt: f64) -> Option<Self> {
-        let pull = body.pull.filter(|_| body.method != Method::ExactFlow)?;
+        let pull = body.pull?;
+        let dt = if body.method == Method::ExactFlow { 0.0 } else { dt };
         let particle = body.particles.get(pull.particle).filter(|particle| !particle.pinned)?;
         let gravity = body.gravity.map_or(0.0, |gravity| gravity.acceleration());
         let at_it = body.springs.iter().filter(|spring| spring.ends.contains(&pull.particle));
@@ -57,13 +58,23 @@ impl PullRow {
         })
     }
 
+    /// The force along x on a particle at x that moves with v, without the cap, as what it is at rest at 0, and how much it falls with x and with v.
+    pub(super) fn along_x(&self) -> [f64; 3] {
+        [self.stiffness * self.target[0], self.stiffness, self.damping]
+    }
+
+    /// The force is no larger than this.
+    pub(super) fn most(&self) -> f64 {
+        MOST_LENGTHS * self.stiffness
+    }
+
     /// The force without what bears up the hand, and how much of it the cap leaves.
     fn force<R: Real, const D: usize>(&self, position: [R; D], velocity: [R; D]) -> ([f64; D], f64) {
         let force: [f64; D] = core::array::from_fn(|axis| {
             self.stiffness * (self.target[axis] - position[axis].lane(0)) - self.damping * velocity[axis].lane(0)
         });
         let size = force.iter().map(|f| f * f).sum::<f64>().sqrt();
-        let most = MOST_LENGTHS * self.stiffness;
+        let most = self.most();
         (force, if size > most { most / size } else { 1.0 })
     }
 

@@ -2,15 +2,19 @@
 
 use bevy::{math::DVec3, prelude::*};
 use wriggle::{
-    body::{Lattice, MassDamping, Neighbours, ParticleId, Particles, Pull, Springs},
+    body::{Lattice, MassDamping, Neighbours, Particle, ParticleId, Particles, Pull, Springs},
     creatures::JellyPlan,
-    mechanics::{elastic_energy, integrators::Method, kinetic_energy},
+    mechanics::{
+        BodyParts, elastic_energy,
+        integrators::{Method, StickRule},
+        kinetic_energy,
+    },
     physics::{Clock, Frozen, Plan, body_parts},
 };
 
 use crate::{
     jelly::{app_of, cube, falling},
-    support::{in_space, particles},
+    support::{Row, Worm, follow, in_space, particles},
 };
 
 #[test]
@@ -37,6 +41,57 @@ fn a_hand_moves_a_mass_alone_as_a_critically_damped_spring_with_the_mass_of_both
     // The smaller the step, the lighter the hand.
     let ratio = late(0.01, 100) / late(0.005, 200);
     assert!((1.9..2.1).contains(&ratio), "{ratio}");
+}
+
+#[test]
+fn the_exact_flow_follows_a_hand_to_its_cap_and_from_it() {
+    // κ = m = 1 and D = 2, the most is 4: x = 2t² while 10 − 2t² − 8t > 4, and critically damped from then on.
+    let particles = Particles::new([Particle::at(DVec3::ZERO)]).unwrap();
+    let row = Row::new(particles.clone(), Springs::new([], &particles).unwrap());
+    let damped = |x: f64, v: f64, to: f64, t: f64| to + (x - to + (v + x - to) * t) * libm::exp(-t);
+    let free = 7.0_f64.sqrt() - 2.0;
+    for (to, sign) in [(3.0, 1.0), (10.0, 1.0), (10.0, -1.0)] {
+        let exact = |t: f64| match to > 4.0 {
+            true if t < free => 2.0 * t * t,
+            true => damped(2.0 * free * free, 4.0 * free, to, t - free),
+            false => damped(0.0, 0.0, to, t),
+        };
+        for (dt, steps) in [(12.0, 1), (0.7, 20), (0.01, 500)] {
+            let pull = Pull { particle: ParticleId(0), target: DVec3::X * to * sign };
+            let body = BodyParts { pull: Some(pull), ..row.parts(Method::ExactFlow) };
+            follow::<1>(&body, dt, steps, |t, body| {
+                let at = sign * body.particles.position(ParticleId(0)).unwrap().x;
+                assert!((at - exact(t)).abs() < 1e-12 * to, "to {to} in steps of {dt}: {at} at {t}, not {}", exact(t));
+            });
+        }
+    }
+}
+
+#[test]
+fn a_worm_in_the_hand_goes_the_same_way_by_every_step_of_the_exact_flow_and_by_small_ones_of_others() {
+    // By its tail; by its head, beyond the cap; and by its middle.
+    for (mass, to) in [(0, 4.0), (2, 9.0), (1, 2.5)] {
+        let at_8 = |method: Method, dt: f64| {
+            let worm = Worm { method, ..Worm::EXACT }.body();
+            let pull = Pull { particle: ParticleId(mass), target: DVec3::X * to };
+            let body = BodyParts { pull: Some(pull), stick: StickRule::Located, ..worm.parts() };
+            let mut last = [0.0; 3];
+            follow::<1>(&body, dt, (8.0 / dt).round() as u64, |_, body| {
+                last = core::array::from_fn(|i| body.particles.position(ParticleId(i as u32)).unwrap().x);
+            });
+            last
+        };
+        let apart = |a: [f64; 3], b: [f64; 3]| (0..3).map(|i| (a[i] - b[i]).abs()).fold(0.0, f64::max);
+        let exact = at_8(Method::ExactFlow, 8.0);
+        for dt in [1.0, 0.16, 0.01] {
+            let error = apart(at_8(Method::ExactFlow, dt), exact);
+            assert!(error < 1e-10, "mass {mass} to {to}: {error:e} in steps of {dt}");
+        }
+        // Others give the hand a mass in proportion to the step.
+        let errors = [0.002, 0.001].map(|dt| apart(at_8(Method::RungeKutta4, dt), exact));
+        let order = (errors[0] / errors[1]).log2();
+        assert!(errors[1] < 0.02 && (0.9..1.1).contains(&order), "mass {mass} to {to}: {errors:?}");
+    }
 }
 
 /// The particles in the middle of a face, of an edge, at a corner and inside of a cube.

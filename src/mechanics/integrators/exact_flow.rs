@@ -1,7 +1,7 @@
 //! The exact flow between events, for bodies on an axis.
 //!
 //! On an axis a body is piecewise linear: between the moments at which a mass sticks or slips, a ramp ends, a square wave switches, a rest length
-//! is clamped or a spring passes through zero length, y' = Ay + b(t) with a constant A. Its solution y(t+τ) = e^(Aτ)y(t) + … is the sum of its
+//! is clamped, a spring passes through zero length or a hand pulls with all that it may, y' = Ay + b(t) with a constant A. Its solution y(t+τ) = e^(Aτ)y(t) + … is the sum of its
 //! Taylor series, of which each term is one evaluation of the forces on the terms before; segments are short enough (‖A‖τ ≤ 2) for some twenty terms to
 //! reach the last place. The same polynomials tell when the next event comes, and the segment ends there. Order: none, the error is that of
 //! rounding; dt only says when the state is shown. No step is unstable. The action of the exponential by a truncated Taylor series is that
@@ -14,7 +14,7 @@ use crate::mechanics::{Model, State, forces::direction, kinks::until_kink};
 
 use super::{About, Integrator};
 use events::Event;
-use series::Series;
+use series::{Series, Signs};
 
 pub(super) const ABOUT: About = About {
     name: "ExactFlow",
@@ -55,6 +55,8 @@ pub struct ExactFlow {
     side: Vec<f64>,
     /// Whether the least rest length holds.
     clamped: Vec<bool>,
+    /// +1 or −1 where a hand pulls with all that it may, along x or against it; else 0.
+    capped: f64,
     series: Series,
 }
 
@@ -66,6 +68,7 @@ impl<const D: usize> Integrator<f64, D> for ExactFlow {
             forward: vec![0.0; particles],
             side: Vec::new(),
             clamped: Vec::new(),
+            capped: 0.0,
             series: Series::new(particles),
         }
     }
@@ -91,7 +94,8 @@ impl<const D: usize> Integrator<f64, D> for ExactFlow {
             self.clamp(model);
             let length = until_kink(&model.muscles, time + at, longest.min(model.dt - at));
             self.settle(model, state);
-            self.series.extend(model, &self.slide, &self.side, &self.clamped, length);
+            let signs = Signs { side: &self.side, clamped: &self.clamped, capped: self.capped };
+            self.series.extend(model, &self.slide, signs, length);
             model.evaluations += self.series.terms() as f64;
             let event = events::first(self, model, length, instant);
             let reach = event.as_ref().map_or(length, |(reach, _)| *reach);
@@ -119,6 +123,7 @@ impl<const D: usize> Integrator<f64, D> for ExactFlow {
                 }
                 Some(Event::Turns) => self.look_forward(model, state),
                 Some(Event::Clamps(spring)) => self.clamped[spring] = !self.clamped[spring],
+                Some(Event::Caps(side)) => self.capped = if self.capped == 0.0 { side } else { 0.0 },
             }
         }
         *state = start;
@@ -136,6 +141,11 @@ impl ExactFlow {
         }));
         self.clamped.clear();
         self.clamped.resize(model.springs.len(), false);
+        self.capped = model.pull.map_or(0.0, |pull| {
+            let [force, by_x, by_v] = pull.along_x();
+            let force = force - by_x * state.position[pull.particle][0] - by_v * state.velocity[pull.particle][0];
+            if force.abs() > pull.most() { force.signum() } else { 0.0 }
+        });
         self.look_forward(model, state);
     }
 
@@ -178,7 +188,8 @@ impl ExactFlow {
                 continue;
             }
             let speed = state.velocity[mass][0] * forward;
-            let push = forward * self.series.push(model, mass, &self.side, &self.clamped);
+            let signs = Signs { side: &self.side, clamped: &self.clamped, capped: self.capped };
+            let push = forward * self.series.push(model, mass, signs);
             self.slide[mass] = if let Some(slide) = self.turned[mass] {
                 slide
             } else if speed > 0.0 {

@@ -13,7 +13,7 @@ use super::{
 const PARTS: usize = 8;
 
 /// What ends a segment.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Event {
     /// A sliding mass comes to rest.
     Rests(usize),
@@ -25,6 +25,8 @@ pub(super) enum Event {
     Turns,
     /// A rest length comes to its least, or leaves it.
     Clamps(usize),
+    /// A hand comes to pull with all that it may on a side, or no longer does.
+    Caps(f64),
 }
 
 /// When the first event of a segment comes, and what it is. A mass that has turned at this instant is not asked again before it is over.
@@ -62,6 +64,12 @@ pub(super) fn first<const D: usize>(
         let spring = muscle.spring as usize;
         let sign = if flow.clamped[spring] { -1.0 } else { 1.0 };
         offer(&series.above_least_series(index), sign, 0.0, Event::Clamps(spring));
+    }
+    if let Some(pull) = &model.pull {
+        for side in [1.0, -1.0].into_iter().filter(|side| flow.capped == 0.0 || flow.capped == *side) {
+            let sign = if flow.capped == 0.0 { -1.0 } else { 1.0 };
+            offer(&series.above_most(pull, side), sign, 0.0, Event::Caps(side));
+        }
     }
     first
 }

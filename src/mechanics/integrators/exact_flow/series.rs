@@ -4,7 +4,7 @@ use core::f64::consts::TAU;
 
 use crate::{
     body::{LEAST_REST_FRACTION, Wave},
-    mechanics::{Model, State, kinks::half_cycles, model::MuscleRow, sin_cycles},
+    mechanics::{Model, State, kinks::half_cycles, model::MuscleRow, pull::PullRow, sin_cycles},
 };
 
 use super::Slide;
@@ -29,6 +29,17 @@ pub(super) struct Series {
     muscle_of: Vec<Option<usize>>,
 }
 
+/// What is constant in a segment beside how masses slide.
+#[derive(Clone, Copy)]
+pub(super) struct Signs<'a> {
+    /// +1 where the second end of a spring is at the greater x, else −1.
+    pub(super) side: &'a [f64],
+    /// Whether the least rest length of a spring holds.
+    pub(super) clamped: &'a [bool],
+    /// +1 or −1 where a hand pulls with all that it may, along x or against it; else 0.
+    pub(super) capped: f64,
+}
+
 /// ‖A‖, bounded by sums over neighbours, and the fastest muscle: the scale of time on which anything changes.
 pub(super) fn fastest_rate<const D: usize>(model: &Model<f64, D>) -> f64 {
     let mut rows = vec![(0.0, model.damping.map_or(0.0, |damping| damping.rate)); model.inverse_mass.len()];
@@ -37,6 +48,11 @@ pub(super) fn fastest_rate<const D: usize>(model: &Model<f64, D>) -> f64 {
             rows[end].0 += 2.0 * spring.stiffness * model.inverse_mass[end];
             rows[end].1 += 2.0 * spring.damping * model.inverse_mass[end];
         }
+    }
+    if let Some(pull) = &model.pull {
+        let ([_, by_x, by_v], row) = (pull.along_x(), &mut rows[pull.particle]);
+        row.0 += by_x * model.inverse_mass[pull.particle];
+        row.1 += by_v * model.inverse_mass[pull.particle];
     }
     let drag = model.friction.map_or(0.0, |friction| friction.drag);
     let bodies = rows.iter().map(|(stiffness, damping)| stiffness.sqrt() + damping + drag);
@@ -110,7 +126,8 @@ impl Series {
     }
 
     /// One coefficient of a spring's length, and of its force.
-    fn force<const D: usize>(&self, model: &Model<f64, D>, s: usize, side: f64, clamped: &[bool], k: usize) -> f64 {
+    fn force<const D: usize>(&self, model: &Model<f64, D>, s: usize, signs: Signs<'_>, k: usize) -> f64 {
+        let (side, clamped) = (signs.side[s], signs.clamped);
         let spring = &model.springs[s];
         let [a, b] = spring.ends.map(|end| end as usize);
         let length = side * (self.position[b][k] - self.position[a][k]);
@@ -118,19 +135,39 @@ impl Series {
         side * (spring.stiffness * (self.rest(model, s, clamped, k) - length) - spring.damping * speed)
     }
 
-    /// What the springs accelerate a mass with at the beginning of the segment.
-    pub(super) fn push<const D: usize>(
-        &self,
-        model: &Model<f64, D>,
-        mass: usize,
-        side: &[f64],
-        clamped: &[bool],
-    ) -> f64 {
+    /// One coefficient of the force of a hand without its cap.
+    fn grip(&self, pull: &PullRow, k: usize) -> f64 {
+        let [force, by_x, by_v] = pull.along_x();
+        let constant = if k == 0 { force } else { 0.0 };
+        constant - by_x * self.position[pull.particle][k] - by_v * self.velocity[pull.particle][k]
+    }
+
+    /// How far the force of a hand without its cap is above the cap on a side, as a polynomial.
+    pub(super) fn above_most(&self, pull: &PullRow, side: f64) -> Polynomial {
+        let mut series = core::array::from_fn(|k| if k < self.terms { side * self.grip(pull, k) } else { 0.0 });
+        series[0] -= pull.most();
+        series
+    }
+
+    /// One coefficient of the force of a hand.
+    fn pull(&self, pull: &PullRow, capped: f64, k: usize) -> f64 {
+        match (capped == 0.0, k) {
+            (true, _) => self.grip(pull, k),
+            (false, 0) => capped * pull.most(),
+            (false, _) => 0.0,
+        }
+    }
+
+    /// What springs and a hand accelerate a mass with at the beginning of the segment.
+    pub(super) fn push<const D: usize>(&self, model: &Model<f64, D>, mass: usize, signs: Signs<'_>) -> f64 {
         let mut push = -model.damping.map_or(0.0, |damping| damping.rate) * self.velocity[mass][0];
+        if let Some(pull) = model.pull.filter(|pull| pull.particle == mass) {
+            push += self.pull(&pull, signs.capped, 0) * model.inverse_mass[mass];
+        }
         for (s, spring) in model.springs.iter().enumerate() {
             let [a, b] = spring.ends.map(|end| end as usize);
             if a == mass || b == mass {
-                let force = self.force(model, s, side[s], clamped, 0) * model.inverse_mass[mass];
+                let force = self.force(model, s, signs, 0) * model.inverse_mass[mass];
                 push += if b == mass { force } else { -force };
             }
         }
@@ -142,8 +179,7 @@ impl Series {
         &mut self,
         model: &Model<f64, D>,
         slide: &[Slide],
-        side: &[f64],
-        clamped: &[bool],
+        signs: Signs<'_>,
         length: f64,
     ) {
         let thickness = model.damping.map_or(0.0, |damping| damping.rate);
@@ -158,9 +194,12 @@ impl Series {
             }
             for (s, spring) in model.springs.iter().enumerate() {
                 let [a, b] = spring.ends.map(|end| end as usize);
-                let force = self.force(model, s, side[s], clamped, k);
+                let force = self.force(model, s, signs, k);
                 self.push[a][k] -= force * model.inverse_mass[a];
                 self.push[b][k] += force * model.inverse_mass[b];
+            }
+            if let Some(pull) = &model.pull {
+                self.push[pull.particle][k] += self.pull(pull, signs.capped, k) * model.inverse_mass[pull.particle];
             }
             let next = 1.0 / (k + 1) as f64;
             power *= length;
