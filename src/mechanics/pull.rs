@@ -58,9 +58,15 @@ impl PullRow {
         })
     }
 
-    /// The force along x on a particle at x that moves with v, without the cap, as what it is at rest at 0, and how much it falls with x and with v.
-    pub(super) fn along_x(&self) -> [f64; 3] {
-        [self.stiffness * self.target[0], self.stiffness, self.damping]
+    /// One coefficient of the force along x without the cap as a series in time, from those of the place and of the velocity. The first, k = 0, is the force itself.
+    pub(super) fn along_x(&self, k: usize, x: f64, v: f64) -> f64 {
+        let constant = if k == 0 { self.stiffness * self.target[0] } else { 0.0 };
+        constant - self.stiffness * x - self.damping * v
+    }
+
+    /// How much the force without the cap falls with the place and with the velocity.
+    pub(super) fn slopes(&self) -> [f64; 2] {
+        [self.stiffness, self.damping]
     }
 
     /// The force is no larger than this.

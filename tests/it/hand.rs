@@ -69,10 +69,11 @@ fn the_exact_flow_follows_a_hand_to_its_cap_and_from_it() {
 
 #[test]
 fn a_worm_in_the_hand_goes_the_same_way_by_every_step_of_the_exact_flow_and_by_small_ones_of_others() {
-    // By its tail; by its head, beyond the cap; and by its middle.
-    for (mass, to) in [(0, 4.0), (2, 9.0), (1, 2.5)] {
+    // By its tail; by its head, beyond the cap; by its middle; and back, where no ratchet holds it.
+    let back = Worm { ratchet: false, drag: 0.5, ..Worm::EXACT };
+    for (worm, mass, to) in [(Worm::EXACT, 0, 4.0), (Worm::EXACT, 2, 9.0), (Worm::EXACT, 1, 2.5), (back, 1, -6.0)] {
         let at_8 = |method: Method, dt: f64| {
-            let worm = Worm { method, ..Worm::EXACT }.body();
+            let worm = Worm { method, ..worm }.body();
             let pull = Pull { particle: ParticleId(mass), target: DVec3::X * to };
             let body = BodyParts { pull: Some(pull), stick: StickRule::Located, ..worm.parts() };
             let mut last = [0.0; 3];

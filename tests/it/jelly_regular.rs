@@ -74,7 +74,9 @@ fn moving(size: (u32, u32, u32), kinds: &[Neighbours]) -> Body {
 #[test]
 fn a_regular_block_moves_as_its_springs_one_by_one_would_move_it() {
     let sizes = [((4, 3, 5), KINDS[3]), ((9, 2, 3), KINDS[3]), ((17, 4, 2), KINDS[1]), ((2, 2, 2), KINDS[2])];
-    for (size, kinds) in sizes.into_iter().chain([((1, 4, 5), KINDS[1]), ((3, 1, 1), KINDS[0])]) {
+    // The neighbours of a row of seven are a whole vector further.
+    let more = [((1, 4, 5), KINDS[1]), ((3, 1, 1), KINDS[0]), ((7, 3, 4), KINDS[3]), ((8, 4, 3), KINDS[3])];
+    for (size, kinds) in sizes.into_iter().chain(more) {
         let body = moving(size, kinds);
         for method in Method::ALL.into_iter().filter(|method| method.asks_forces_alone()) {
             let parts = parts(&body, method);

@@ -141,12 +141,15 @@ impl ExactFlow {
         }));
         self.clamped.clear();
         self.clamped.resize(model.springs.len(), false);
+        self.look_at_hand(model, state);
+        self.look_forward(model, state);
+    }
+
+    fn look_at_hand<const D: usize>(&mut self, model: &Model<f64, D>, state: &State<f64, D>) {
         self.capped = model.pull.map_or(0.0, |pull| {
-            let [force, by_x, by_v] = pull.along_x();
-            let force = force - by_x * state.position[pull.particle][0] - by_v * state.velocity[pull.particle][0];
+            let force = pull.along_x(0, state.position[pull.particle][0], state.velocity[pull.particle][0]);
             if force.abs() > pull.most() { force.signum() } else { 0.0 }
         });
-        self.look_forward(model, state);
     }
 
     fn look_forward<const D: usize>(&mut self, model: &Model<f64, D>, state: &State<f64, D>) {
@@ -176,11 +179,16 @@ impl ExactFlow {
         let masses = model.spine.iter().map(|row| row.particle as usize);
         let feels = |mass: &usize| model.inverse_mass[*mass] > 0.0;
         if friction.ratchet {
+            let held = model.pull.map(|pull| (pull.particle, state.velocity[pull.particle][0]));
             for mass in masses.clone().filter(feels) {
                 let v = &mut state.velocity[mass][0];
                 *v = if *v * self.forward[mass] < 0.0 { 0.0 } else { *v };
             }
             self.series.restart_velocities(state);
+            // The force of the hand leaps with the velocity that the ratchet takes.
+            if held.is_some_and(|(particle, before)| state.velocity[particle][0] != before) {
+                self.look_at_hand(model, state);
+            }
         }
         for mass in masses.filter(feels) {
             let forward = self.forward[mass];

@@ -29,6 +29,7 @@ impl Numbers {
         Self(vec![Line::zeroed(); count.div_ceil(LANES)])
     }
 
+    /// All of them.
     pub(super) fn all_mut(&mut self) -> &mut [f64] {
         bytemuck::cast_slice_mut(&mut self.0)
     }

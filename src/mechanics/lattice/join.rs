@@ -1,4 +1,4 @@
-//! The springs that begin in a layer, eight side by side: the inner loop of a block.
+//! The springs that begin in a layer, eight side by side, or four at the end: the inner loop of a block.
 
 use crate::mechanics::{Lanes, Real};
 
@@ -45,6 +45,7 @@ pub(super) struct Grid<'a> {
     pub(super) onward: &'a [Way],
     /// A column for each of nine ways across a layer: 1 where a mass of the layer has a neighbour there, 0 elsewhere.
     pub(super) masks: &'a [f64],
+    /// How the columns of a layer are laid out.
     pub(super) shape: Shape,
     /// How many layers there are.
     pub(super) layers: usize,
@@ -101,10 +102,13 @@ impl Grid<'_> {
 
 /// The next layer.
 pub(super) struct Next<'a, 'b, 'c> {
+    /// Which it is.
     pub(super) z: usize,
     /// Whether the forces on it are complete with the springs that lead to it, and are used.
     pub(super) own: bool,
+    /// Its masses.
     pub(super) layer: &'a mut Layer<'b>,
+    /// What acts on them.
     pub(super) sums: &'a mut Sums<'c>,
 }
 

@@ -108,6 +108,7 @@ impl<'a> Layer<'a> {
         Self { shape, columns: &mut columns[..shape.layer()] }
     }
 
+    /// How its columns are laid out.
     #[inline(always)]
     pub(super) fn shape(&self) -> Shape {
         self.shape

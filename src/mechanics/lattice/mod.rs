@@ -1,8 +1,11 @@
-//! Forces of a block on a regular grid: neighbours by where they are, eight springs at a time, layer by layer.
+//! Forces of a block on a regular grid: neighbours by where they are, eight springs at a time, or four at the end of a layer.
 //!
 //! The general springs look up the ends of each; here the neighbour along a way is always as many numbers further. Layers lie coordinate by coordinate; two are
 //! at hand at a time, and the springs that begin at eight masses of the lower one are computed side by side, one way after the other. A spring acts forward on the mass
 //! at which it begins and back on the other.
+//!
+//! The next layer's masses move on as soon as no spring that is still to come ends there, in the midst of the springs of this one: what moves them is done while the
+//! processor waits for roots and quotients.
 //!
 //! Three sums are kept of what a mass feels: forward, back within its layer, and back from the layer before. Each is in an order that depends on the mass's place in
 //! its layer alone, and they come together when all are complete. So a slab of layers comes to the same bits wherever it begins and ends, whoever computes the
@@ -50,6 +53,7 @@ pub(super) struct LatticeRows {
     damped: bool,
     /// How long a spring of each kind is when the watch holds the body for exploded.
     longest: [f64; 3],
+    /// How the columns of a layer are laid out.
     shape: Shape,
     /// Among how many threads its layers are shared.
     slabs: usize,

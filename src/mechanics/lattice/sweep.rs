@@ -25,8 +25,8 @@ pub(super) struct Slab<'a, T> {
     pub(super) task: T,
 }
 
-/// How many numbers a slab needs room for beside its layers: a layer that belongs to another slab, and the sums of the two layers at hand. What leads back is zero but while
-/// they are.
+/// How many numbers a slab needs room for beside its layers: a layer that belongs to another slab, and the sums of the two layers at hand. What leads back to its masses
+/// is zero but while they are.
 pub(super) fn scratch(shape: Shape) -> usize {
     shape.layer() + 2 * shape.sums()
 }

@@ -199,20 +199,25 @@ pub(super) fn follow(
     mut skins: Query<(&SkinOf, &mut StrandSkin)>,
     mut meshes: ResMut<Assets<Mesh>>,
 ) {
-    for (of, mut skin) in &mut skins {
-        let Ok((shown, _)) = bodies.get(of.0) else { continue };
-        let skin = &mut *skin;
-        skin.surface.cut(shown.positions(), skin.outline, skin.grain);
+    // Each by itself: a hundred snakes have a third of a million vertices.
+    skins.par_iter_mut().for_each(|(of, mut skin)| {
+        let Ok((shown, _)) = bodies.get(of.0) else { return };
+        let StrandSkin { outline, grain, surface, bristles, .. } = &mut *skin;
+        surface.cut(shown.positions(), outline, *grain);
+        if let Some((_, bristles)) = bristles {
+            bristles.grow(surface);
+        }
+    });
+    for (_, skin) in skins.iter().filter(|(_, skin)| !skin.surface.positions.is_empty()) {
         if let Some(mut mesh) = meshes.get_mut(&skin.mesh) {
             write(&mut mesh, &skin.surface.positions, &skin.surface.normals);
             if let Some(VertexAttributeValues::Float32x4(tangents)) = mesh.attribute_mut(Mesh::ATTRIBUTE_TANGENT) {
                 tangents.clone_from(&skin.surface.tangents);
             }
         }
-        if let Some((handle, bristles)) = &mut skin.bristles
-            && let Some(mut mesh) = meshes.get_mut(&*handle)
+        if let Some((handle, bristles)) = &skin.bristles
+            && let Some(mut mesh) = meshes.get_mut(handle)
         {
-            bristles.grow(&skin.surface);
             write(&mut mesh, &bristles.positions, &bristles.normals);
         }
     }

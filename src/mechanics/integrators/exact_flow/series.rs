@@ -40,7 +40,7 @@ pub(super) struct Signs<'a> {
     pub(super) capped: f64,
 }
 
-/// ‖A‖, bounded by sums over neighbours, and the fastest muscle: the scale of time on which anything changes.
+/// ‖A‖, bounded by sums over neighbours and a hand, and the fastest muscle: the scale of time on which anything changes.
 pub(super) fn fastest_rate<const D: usize>(model: &Model<f64, D>) -> f64 {
     let mut rows = vec![(0.0, model.damping.map_or(0.0, |damping| damping.rate)); model.inverse_mass.len()];
     for spring in &model.springs {
@@ -50,7 +50,7 @@ pub(super) fn fastest_rate<const D: usize>(model: &Model<f64, D>) -> f64 {
         }
     }
     if let Some(pull) = &model.pull {
-        let ([_, by_x, by_v], row) = (pull.along_x(), &mut rows[pull.particle]);
+        let ([by_x, by_v], row) = (pull.slopes(), &mut rows[pull.particle]);
         row.0 += by_x * model.inverse_mass[pull.particle];
         row.1 += by_v * model.inverse_mass[pull.particle];
     }
@@ -137,9 +137,7 @@ impl Series {
 
     /// One coefficient of the force of a hand without its cap.
     fn grip(&self, pull: &PullRow, k: usize) -> f64 {
-        let [force, by_x, by_v] = pull.along_x();
-        let constant = if k == 0 { force } else { 0.0 };
-        constant - by_x * self.position[pull.particle][k] - by_v * self.velocity[pull.particle][k]
+        pull.along_x(k, self.position[pull.particle][k], self.velocity[pull.particle][k])
     }
 
     /// How far the force of a hand without its cap is above the cap on a side, as a polynomial.
