@@ -199,7 +199,7 @@ pub(super) fn follow(
     mut skins: Query<(&SkinOf, &mut StrandSkin)>,
     mut meshes: ResMut<Assets<Mesh>>,
 ) {
-    // Each by itself: a hundred snakes have a third of a million vertices.
+    // Each by itself: a hundred snakes have more than a quarter of a million vertices.
     skins.par_iter_mut().for_each(|(of, mut skin)| {
         let Ok((shown, _)) = bodies.get(of.0) else { return };
         let StrandSkin { outline, grain, surface, bristles, .. } = &mut *skin;
